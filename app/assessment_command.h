@@ -4,7 +4,7 @@
 #include "app/command_line.h"
 #include "app/console.h"
 #include "app/output.h"
-#include "core/base/new_folder.h"
+#include "core/base/file_places.h"
 #include "core/base/progress.h"
 #include "core/report/assessment_report.h"
 

@@ -1,4 +1,3 @@
-#include "app/batch_lines.h"
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"

@@ -5,7 +5,7 @@
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/check/check_calibration.h"
 #include "core/pipeline/check/check_files.h"
-#include "core/pipeline/session/check_options.h"
+#include "core/pipeline/session/calibration_options.h"
 
 #include <array>
 #include <memory>

@@ -5,7 +5,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/file_places.h"
-#include "core/base/shell_word.h"
+#include "core/base/plain_text.h"
 #include "core/pipeline/session/session_guess.h"
 #include "core/recording/recording_reader.h"
 

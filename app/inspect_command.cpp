@@ -5,7 +5,6 @@
 #include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/recording/inspection.h"
-#include "core/recording/inspection_json.h"
 #include "core/recording/recording_reader.h"
 
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 #include "app/version.h"
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/base/new_folder.h"
+#include "core/base/file_places.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
 #include "core/pipeline/lens/intrinsics_files.h"
 #include "core/pipeline/pass/session_recording.h"

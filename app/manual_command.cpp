@@ -7,7 +7,7 @@
 #include "app/option_value.h"
 #include "app/version.h"
 #include "core/base/atomic_file.h"
-#include "core/base/new_folder.h"
+#include "core/base/file_places.h"
 #include "core/pipeline/session/calibration_options.h"
 
 #include <fmt/format.h>

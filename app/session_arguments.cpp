@@ -4,7 +4,7 @@
 
 #include "core/base/distinct_names.h"
 #include "core/base/error.h"
-#include "core/base/shell_word.h"
+#include "core/base/plain_text.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/runs/run_data.h"
 #include "core/pipeline/runs/saved_run.h"

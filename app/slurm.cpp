@@ -6,7 +6,6 @@
 #include "core/base/file_places.h"
 #include "core/base/number.h"
 #include "core/base/plain_text.h"
-#include "core/base/shell_word.h"
 #include "core/base/yaml_node.h"
 
 #include <fmt/format.h>

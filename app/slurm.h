@@ -3,7 +3,6 @@
 #pragma once
 
 #include "core/pipeline/batch/batch_jobs.h"
-#include "core/pipeline/batch/batch_outcome.h"
 
 #include <filesystem>
 #include <span>

@@ -1,6 +1,6 @@
 // evical.calibrate and evical.intrinsics.
 #include "core/base/error.h"
-#include "core/base/new_folder.h"
+#include "core/base/file_places.h"
 #include "core/geometry/camera_model.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
 #include "core/pipeline/rig/calibration_pipeline.h"

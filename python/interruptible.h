@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/progress.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 
 #include <pybind11/pybind11.h>
 

@@ -2,7 +2,6 @@
 #include "core/base/error.h"
 #include "core/frames/gray_image.h"
 #include "core/recording/inspection.h"
-#include "core/recording/inspection_json.h"
 #include "core/recording/recording_server.h"
 #include "python/arrays.h"
 #include "python/bindings.h"

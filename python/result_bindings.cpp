@@ -1,9 +1,9 @@
 // evical.Result and its sensors.
-#include "core/data/calibration_stage.h"
+#include "core/data/calibration_observer.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/runs/run_data.h"
 #include "core/pipeline/runs/saved_run.h"
-#include "core/report/quantity_labels.h"
+#include "core/report/shown_quantity.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/errors.h"

@@ -1,15 +1,25 @@
 // Atomic writing of files: a file appears completely or not at all.
 #pragma once
 
-#include "core/base/text_sink.h"
-
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace evical {
+
+// Sinks for texts that are too large for memory: passed on piece by piece.
+
+using TextSink = std::function<void(std::string_view piece)>;
+using TextSource = std::function<void(const TextSink& sink)>;
+
+inline std::string wholeText(const TextSource& source) {
+  std::string text;
+  source([&](std::string_view piece) { text += piece; });
+  return text;
+}
 
 // Writes a temporary file next to the target, syncs and renames it. On failure, throws CalibrationError
 // (CalibrationFailed) that names path and reason, leaves no temporary file, and keeps an older file

@@ -2,7 +2,7 @@
 // reported.
 #pragma once
 
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 
 #include <sys/types.h>
 

@@ -1,12 +1,14 @@
 // Checks of paths and their error messages, and the content of files.
 #pragma once
 
+#include "core/base/atomic_file.h"
 #include "core/base/error.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <system_error>
 
 namespace evical {
 
@@ -25,5 +27,27 @@ inline bool pathExists(const std::filesystem::path& path) {
 // Content of a file, or its first bytes; empty if it cannot be read. A pipe or device has none: opening it could wait forever.
 std::string contentOfFile(const std::filesystem::path& file,
                           std::uintmax_t most_bytes = std::numeric_limits<std::uintmax_t>::max());
+
+// A folder that is created for results, and removed if it stays empty.
+
+class NewFolder {
+ public:
+  // Throws CalibrationError (BadInput) if it cannot be created or written to.
+  explicit NewFolder(const std::filesystem::path& folder) : folder_(folder), was_there_(pathExists(folder)) {
+    makeOutputFolder(folder);
+  }
+  ~NewFolder() {
+    std::error_code ignored;
+    if (!was_there_) std::filesystem::remove(folder_, ignored);  // only if empty
+  }
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+
+  bool wasThere() const { return was_there_; }
+
+ private:
+  std::filesystem::path folder_;
+  bool was_there_;
+};
 
 }  // namespace evical

@@ -11,4 +11,13 @@ namespace evical {
 // are skipped.
 void inParallel(int threads, std::size_t parts, const std::function<void(std::size_t part)>& work);
 
+// Lower thread priorities for background work, so that the window stays responsive.
+
+// Lowers the priority of the calling thread and of the threads that it will start. No effect on systems
+// without thread priorities (other systems than Linux).
+void makeThreadModest();
+
+// Gives the calling thread and those that it will start the lowest priority, for work that nobody waits for.
+void makeThreadLast();
+
 }  // namespace evical

@@ -23,7 +23,7 @@ struct ProgressStage {
   bool operator==(const ProgressStage&) const = default;
   std::string text() const { return part.empty() ? name : part + ": " + name; }
 
-  std::string name, part;  // of a calibration: core/data/calibration_stage.h
+  std::string name, part;  // of a calibration: core/data/calibration_observer.h
 };
 
 // Called from worker threads; implementations must lock if necessary. All fractions are work done / work to

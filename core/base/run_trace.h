@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/base/progress.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 
 #include <atomic>
 #include <map>

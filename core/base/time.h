@@ -2,6 +2,7 @@
 // estimator.
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 
@@ -30,5 +31,30 @@ constexpr std::int64_t nearestMicrosecond(std::int64_t time_ns) {
   const std::int64_t floor_us = time_ns / kMicrosecond_ns - (time_ns % kMicrosecond_ns < 0 ? 1 : 0);
   return floor_us + (time_ns - floor_us * kMicrosecond_ns >= kMicrosecond_ns / 2 ? 1 : 0);
 }
+
+// Elapsed time by a monotonic clock.
+
+class Stopwatch {
+ public:
+  // Since construction or the last restart.
+  double elapsed_s() const { return secondsFrom(Clock::now() - begin_); }
+
+  // Restarts; returns the elapsed time.
+  double restart_s() {
+    const Clock::time_point now = Clock::now();
+    const double since_s = secondsFrom(now - begin_);
+    begin_ = now;
+    return since_s;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  static double secondsFrom(Clock::duration duration) {
+    return std::chrono::duration<double>(duration).count();
+  }
+
+  Clock::time_point begin_ = Clock::now();
+};
 
 }  // namespace evical

@@ -2,7 +2,12 @@
 // maintain` and `evical repeat`.
 #pragma once
 
+#include "core/data/calibration_status.h"
+
+#include <Eigen/Core>
+
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -66,6 +71,126 @@ struct Assessment {
   std::string before;         // name of the old result; may be empty
   std::vector<std::string> inputs;  // names of recordings or logs
   std::string version;
+};
+
+// Check of an old calibration with a new recording.
+
+// Use of the windows of a recording without a board.
+struct CheckedWindows {
+  struct LeftOut {
+    std::string key, words;
+    std::size_t windows = 0;
+  };
+  std::string sensor;
+  std::size_t all = 0, used = 0;
+  std::size_t turning_alone = 0;  // used windows in which a translation does not improve the fit
+  std::vector<LeftOut> left_out;  // by reason
+};
+
+struct CalibrationCheck : Assessment {
+  bool without_board = false;           // if true, `windows` has the data used
+  std::vector<CheckedWindows> windows;  // by event camera
+};
+
+// Result of the maintenance of calibrated IMUs with a log: changes since the calibration, changes during the
+// log with their times, and the smallest detectable change.
+
+// A change during the log; `against` is empty if several IMUs identify the one that changed.
+struct MaintenanceStep : Finding {
+  double at_s = 0.0, noticed_s = 0.0;  // since the log's start, on the reference IMU's clock
+};
+
+struct MaintainedStop {
+  double from_s = 0.0, to_s = 0.0;
+  Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero(),
+                  rate_rad_s = Eigen::Vector3d::Zero();  // means, as measured
+  double residual_m_s2 = 0.0,
+         sigma_m_s2 = 0.0;  // of |M^-1 (f - b)| minus gravity, with the current parameters
+  bool used = true;
+};
+
+// Data of one IMU.
+struct MaintainedImu {
+  std::string name, stream;
+  double from_s = 0.0, to_s = 0.0, rate_hz = 0.0;
+  std::vector<MaintainedStop> stops;
+  std::string weakest;  // the direction that stops constrain least; empty without stops
+  double weakest_sigma = 0.0;
+  double misfit = 0.0;  // RMS of the stops' normalised residuals; 0: too few stops
+};
+
+// A quantity over time, number by number.
+struct TrackedNumber {
+  std::string name;  // "x"; empty for scalar quantities
+  std::vector<double> values, sigmas;
+};
+struct TrackedQuantity {
+  std::string name, title, unit;
+  std::vector<TrackedNumber> numbers;
+};
+struct MaintenanceTrack {
+  std::string sensor, against;
+  std::vector<double> times_s;
+  std::vector<TrackedQuantity> quantities;
+};
+
+// True if a step is visible in a track: a step of the same pair, or of the IMU that the track is relative to.
+inline bool isIn(const MaintenanceStep& step, const MaintenanceTrack& track) {
+  return step.sensor == track.sensor ? step.against == track.against
+                                     : step.against.empty() && step.sensor == track.against;
+}
+
+struct Maintenance : Assessment {
+  std::vector<MaintainedImu> imus;
+  std::vector<MaintenanceStep> steps;
+  std::vector<MaintenanceTrack> tracks;
+  double duration_s = 0.0, took_s = 0.0, memory_peak_mb = 0.0;
+};
+
+// Repeatability of a calibration over several recordings of one rig, and their joint solution.
+
+// One number of a quantity, in display units; lists by calibrated recording. If a recording does not
+// determine it, value and sigma are NaN.
+struct RepeatedNumber {
+  std::string name, unit;  // "rotation.x", "deg"
+  std::vector<double> values, sigmas;
+  int count = 0;  // recordings that fit and determine it: the following values are of these
+  double mean = 0.0;
+  double deviation = 0.0;   // over recordings; 0 with fewer than two
+  double mean_sigma = 0.0;  // expected deviation: RMS of sigmas, without priors common to all recordings
+  double joint = 0.0, joint_sigma = 0.0;  // of the joint solution; sigma 0: none
+
+  // Ratio of deviation and sigma: near 1 over enough recordings if sigmas are calibrated.
+  double ratio() const { return mean_sigma > 0.0 ? deviation / mean_sigma : 0.0; }
+};
+
+struct RepeatedQuantity {
+  std::string sensor, name, title;
+  bool common = true;  // false: separate for each recording
+  std::vector<RepeatedNumber> numbers;
+};
+
+enum class RepeatOutcome { Fits, DoesNotFit, Failed };
+
+struct RepeatedRecording {
+  std::string name, file;
+  RepeatOutcome outcome = RepeatOutcome::Fits;
+  CalibrationStatus status = CalibrationStatus::Ok;  // of its separate calibration
+  std::string reason;                                // why it failed or is doubtful
+  // Test against all others that fit; the limit follows from the false alarm rate (false_alarms).
+  double chi_square = 0.0, limit = 0.0;
+  int freedom = 0;                // 0: no comparison is possible
+  std::vector<Finding> findings;  // differences from the others; `before` is their value
+};
+
+// Unchanged: the recordings agree. Cannot tell: there are fewer than two of them.
+struct Repeatability : Assessment {
+  std::vector<RepeatedRecording> recordings;
+  std::vector<std::string> columns;  // calibrated recordings, in the order of the lists of numbers
+  std::vector<RepeatedQuantity> quantities;
+  double rms_ratio = 0.0;     // over all numbers that the recordings determine
+  std::string own_values_of;  // recording whose biases, gravity and time offsets are in the joint result
+  double took_s = 0.0;
 };
 
 }  // namespace evical

@@ -2,9 +2,9 @@
 // reconstructed (docs/maths.md, 8.1).
 #pragma once
 
-#include "core/base/option_struct.h"
+#include "core/base/option_row.h"
 #include "core/data/imu_sample.h"
-#include "core/data/recording_fault.h"
+#include "core/data/recording.h"
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 #include "core/data/imu_units.h"
 
-#include "core/data/wrong_input.h"
+#include "core/data/quality_warning.h"
 
 #include <cmath>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 #include "core/data/quantity.h"
 
 #include "core/data/intrinsics_result.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/so3.h"
 
 #include <algorithm>

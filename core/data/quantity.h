@@ -26,7 +26,7 @@ enum class QuantityShape {
   Rotation,       // differences and sigmas are about the axes of the target frame
   LocalRotation,  // about the axes of the source frame
   UpperTriangle,  // of a 3 x 3 matrix, row by row
-  Intrinsics,     // in the order of intrinsics_numbers.h
+  Intrinsics,     // in the order of camera_intrinsics.h
   Gravity,        // two tilts, and the norm if it is estimated
 };
 

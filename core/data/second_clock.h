@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/data/imu_sample.h"
-#include "core/data/recording_fault.h"
+#include "core/data/recording.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/data/imu_sample.h"
-#include "core/data/recording_fault.h"
+#include "core/data/recording.h"
 
 #include <array>
 #include <cstddef>

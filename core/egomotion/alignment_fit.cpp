@@ -1,6 +1,5 @@
 #include "core/egomotion/alignment_fit.h"
 
-#include "core/geometry/best_rotation.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/robust.h"
 

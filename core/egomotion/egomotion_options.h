@@ -1,7 +1,7 @@
 // Options of a camera's rotation without a board, aligned with an IMU's. docs/maths.md, 16.
 #pragma once
 
-#include "core/base/option_struct.h"
+#include "core/base/option_row.h"
 
 namespace evical {
 

@@ -4,7 +4,7 @@
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
 #include "core/export/imu_frames.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>

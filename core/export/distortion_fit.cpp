@@ -1,7 +1,7 @@
 #include "core/export/distortion_fit.h"
 
 #include "core/base/error.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/lens_fit.h"
 
 #include <fmt/format.h>

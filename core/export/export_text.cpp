@@ -2,7 +2,6 @@
 
 #include "core/base/error.h"
 #include "core/base/plain_text.h"
-#include "core/base/shell_word.h"
 #include "core/base/yaml_node.h"
 
 #include <fmt/format.h>

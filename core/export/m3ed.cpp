@@ -1,7 +1,7 @@
-#include "core/export/data_set_cameras.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
+#include "core/export/stereo.h"
 #include "core/format/hdf5_content.h"
 
 #include <fmt/format.h>

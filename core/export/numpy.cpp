@@ -2,11 +2,11 @@
 #include "core/base/plain_text.h"
 #include "core/data/quantity.h"
 #include "core/export/distortion_fit.h"
+#include "core/export/export_text.h"
 #include "core/export/exporters.h"
-#include "core/export/ros_camera.h"
 #include "core/format/npy.h"
-#include "core/geometry/intrinsics_numbers.h"
-#include "core/report/quantity_labels.h"
+#include "core/geometry/camera_intrinsics.h"
+#include "core/report/shown_quantity.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
-#include "core/export/ros_camera.h"
 #include "core/export/stereo.h"
 
 #include <fmt/format.h>

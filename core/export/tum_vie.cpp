@@ -1,9 +1,9 @@
 #include "core/base/error.h"
 #include "core/export/basalt_text.h"
-#include "core/export/data_set_cameras.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
+#include "core/export/stereo.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "core/foreign/readers.h"
 
 #include "core/base/error.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 
 #include <algorithm>
 #include <iterator>

@@ -5,7 +5,6 @@
 #include "core/base/file_places.h"
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
-#include "core/foreign/read_pair.h"
 #include "core/foreign/readers.h"
 #include "core/format/intrinsics_yaml.h"
 

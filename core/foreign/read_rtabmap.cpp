@@ -3,7 +3,6 @@
 #include "core/base/error.h"
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
-#include "core/foreign/read_pair.h"
 #include "core/foreign/readers.h"
 
 #include <fmt/format.h>

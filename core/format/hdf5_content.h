@@ -1,7 +1,7 @@
 // HDF5 files in memory, as datasets with paths.
 #pragma once
 
-#include "core/base/text_sink.h"
+#include "core/base/atomic_file.h"
 
 #include <cstdint>
 #include <functional>

@@ -2,10 +2,10 @@
 
 #include "core/base/file_places.h"
 #include "core/base/nearest_name.h"
-#include "core/base/trimmed.h"
+#include "core/base/plain_text.h"
 #include "core/data/intrinsics_result.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/camera_model.h"
-#include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/sphere_lens.h"
 #include "core/numerics/angles.h"
 

@@ -3,7 +3,7 @@
 
 #include "core/base/yaml_node.h"
 
-#include "core/data/lens_uncertainty.h"
+#include "core/data/camera_lens.h"
 #include "core/geometry/camera_intrinsics.h"
 
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/data/event.h"
-#include "core/frames/blink_options.h"
+#include "core/frames/frame_options.h"
 #include "core/geometry/resolution.h"
 
 #include <cstdint>

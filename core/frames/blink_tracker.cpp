@@ -3,7 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/how_to.h"
 #include "core/base/time.h"
-#include "core/frames/still_views.h"
+#include "core/frames/views_from_frames.h"
 
 #include <fmt/format.h>
 

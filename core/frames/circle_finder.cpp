@@ -1,8 +1,8 @@
-#include "core/frames/agreeing_points.h"
 #include "core/frames/circle_edges.h"
 #include "core/frames/pattern_finder.h"
 #include "core/frames/picture_view.h"
-#include "core/geometry/lattice_placement.h"
+#include "core/frames/plane_map.h"
+#include "core/geometry/point_lattice.h"
 
 #include <Eigen/LU>
 #include <opencv2/imgproc.hpp>

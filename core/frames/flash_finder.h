@@ -1,9 +1,9 @@
 // Detection of the board in counts of flashes, and measurement of its points in the sensor's own pixels.
 #pragma once
 
-#include "core/frames/blink_options.h"
 #include "core/frames/board_finder.h"
-#include "core/frames/flash_counts.h"
+#include "core/frames/flash_gathering.h"
+#include "core/frames/frame_options.h"
 
 #include <optional>
 #include <string>

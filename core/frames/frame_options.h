@@ -1,7 +1,7 @@
 // Options of the detection of boards in frames.
 #pragma once
 
-#include "core/base/option_struct.h"
+#include "core/base/option_row.h"
 
 namespace evical {
 
@@ -30,6 +30,21 @@ struct FrameOptions {
   constexpr explicit FrameOptions(NoDefaults) {}
   bool operator==(const FrameOptions&) const = default;
   static const OptionTable<FrameOptions>& table();
+};
+
+// Options of the detection of blinking boards.
+
+struct BlinkOptions {
+  double least_hz, most_hz;
+  double least_peak, least_share;
+  double look_s;
+  double largest_move_px, still_px;
+  int smallest_side_px;
+
+  BlinkOptions();  // the defaults
+  constexpr explicit BlinkOptions(NoDefaults) {}
+  bool operator==(const BlinkOptions&) const = default;
+  static const OptionTable<BlinkOptions>& table();
 };
 
 }  // namespace evical

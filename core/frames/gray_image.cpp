@@ -1,8 +1,9 @@
 #include "core/frames/gray_image.h"
 
+#include "core/frames/picture_view.h"
+
 #include "core/base/error.h"
 #include "core/format/picture_header.h"
-#include "core/frames/picture_view.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -12,9 +13,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace evical {
 namespace {
@@ -176,6 +179,26 @@ void decodeAhead(Frame& frame) {
   } catch (const CalibrationError&) {
     // reported where the frame is used
   }
+}
+
+namespace {
+
+std::string encoded(const Frame& frame, const char* suffix, const std::vector<int>& options) {
+  std::vector<std::uint8_t> bytes;
+  if (!cv::imencode(suffix, viewOf(frame.size_px, CV_8UC1, frame.bytes, frame.row_bytes), bytes, options))
+    throw calibrationFailed("frame", std::string("cannot be written as ") + suffix,
+                            "Check that OpenCV supports this format");
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+std::string encodedPng(const Frame& frame) {
+  return encoded(frame, ".png", {cv::IMWRITE_PNG_COMPRESSION, 1});
+}
+
+std::string encodedJpeg(const Frame& frame, int quality) {
+  return encoded(frame, ".jpg", {cv::IMWRITE_JPEG_QUALITY, quality});
 }
 
 }  // namespace evical

@@ -24,4 +24,12 @@ GrayImage decodeFrame(const Frame& frame, const std::string& place);
 // stays unchanged.
 void decodeAhead(Frame& frame);
 
+// Encoding of a frame as a picture file.
+
+// For Gray8 frames. Fast, with moderate compression.
+std::string encodedPng(const Frame& frame);
+
+// Lossy; quality 1 to 100.
+std::string encodedJpeg(const Frame& frame, int quality);
+
 }  // namespace evical

@@ -1,7 +1,7 @@
-#include "core/frames/agreeing_points.h"
 #include "core/frames/corner_measurement.h"
 #include "core/frames/pattern_finder.h"
 #include "core/frames/picture_view.h"
+#include "core/frames/plane_map.h"
 #include "core/frames/tag_layout.h"
 
 #include <apriltag/apriltag.h>

@@ -2,9 +2,11 @@
 // blurred views.
 #pragma once
 
-#include "core/data/board_observations.h"
 #include "core/frames/found_point.h"
 
+#include "core/data/board_observations.h"
+
+#include <optional>
 #include <vector>
 
 namespace evical {
@@ -23,5 +25,21 @@ struct ViewFromFrame {
 // in time, else 0. During the exposure a point moves by velocity times exposure: a tenth
 // of that, along the motion, is added as an error.
 std::vector<ViewFromFrame> viewsFromFrames(const std::vector<PointsInFrame>& frames, int points_of_board);
+
+// Movement of a board between two pictures, and merging of views of a board at rest.
+
+// RMS movement over the board's points; empty if the two have too few common points. Excludes noise of single
+// points: only motion that a change of pose can cause counts.
+std::optional<double> movement_px(const FoundPoints& from, const FoundPoints& to);
+
+// The later view, with points numbered as in the earlier view at the same places: the numbering of a
+// symmetric board, or of a part of a board, may change between views. Points that have moved further are
+// removed.
+FoundPoints numberedAs(const FoundPoints& earlier, const FoundPoints& later, double nearest_px);
+
+// Replaces consecutive views in which the board moves by less than `still_px` by their mean. This reduces
+// noise, but not errors of `common_sigma_px`.
+std::vector<PointsInFrame> joinedWhileStill(const std::vector<PointsInFrame>& views, double still_px,
+                                            double common_sigma_px);
 
 }  // namespace evical

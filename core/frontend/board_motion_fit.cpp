@@ -4,7 +4,7 @@
 // unchanged.
 #include "core/frontend/board_motion.h"
 
-#include "core/frontend/outline_sector.h"
+#include "core/frontend/circle_measurement.h"
 #include "core/numerics/robust.h"
 
 #include <Eigen/Cholesky>

@@ -1,9 +1,10 @@
 #include "core/frontend/board_placement.h"
 
-#include "core/frontend/board_motion_from_points.h"
+#include "core/frontend/board_motion.h"
+
 #include "core/geometry/camera_model.h"
 #include "core/geometry/homography.h"
-#include "core/geometry/lattice_placement.h"
+#include "core/geometry/point_lattice.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -16,6 +17,20 @@
 #include <utility>
 
 namespace evical {
+
+CircleLattice findCircleLattice(const std::vector<MovingCircle>& circles, const GridOptions& options) {
+  std::vector<LatticeCircle> still;
+  still.reserve(circles.size());
+  for (const MovingCircle& circle : circles) still.push_back({circle.centre_px, circle.radius_px});
+  const LatticeOptions lattice = {.shortest_step_radii = options.shortest_step_radii,
+                                  .longest_step_radii = options.longest_step_radii,
+                                  .largest_radius_ratio = options.largest_radius_ratio,
+                                  .step_tolerance = options.step_tolerance,
+                                  .least_sine = options.least_sine,
+                                  .least_circles = options.least_circles};
+  return findCircleLattice(still, lattice);
+}
+
 namespace {
 
 // Placements with fewer circles than this share of the best one's are not fitted.

@@ -2,12 +2,19 @@
 #pragma once
 
 #include "core/frontend/board_motion.h"
-#include "core/frontend/circle_lattice.h"
+#include "core/frontend/detection_options.h"
+#include "core/frontend/moving_circle.h"
+
+#include "core/geometry/point_lattice.h"
 
 #include <optional>
 #include <vector>
 
 namespace evical {
+
+// The lattice of moving circles, with the front end's options.
+
+CircleLattice findCircleLattice(const std::vector<MovingCircle>& circles, const GridOptions& options);
 
 // One placement of the lattice on the board.
 struct BoardPlacement {

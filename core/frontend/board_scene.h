@@ -4,7 +4,7 @@
 #include "core/geometry/board.h"
 
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/undistortion_table.h"
+#include "core/geometry/camera_model.h"
 
 #include <Eigen/Core>
 

@@ -7,9 +7,8 @@
 #include "core/frontend/board_placement.h"
 #include "core/frontend/board_scene.h"
 #include "core/frontend/circle_candidate.h"
-#include "core/frontend/circle_lattice.h"
 #include "core/frontend/circle_pairs.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 
 #include <optional>
 #include <vector>

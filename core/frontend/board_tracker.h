@@ -4,10 +4,8 @@
 #pragma once
 
 #include "core/data/board_observations.h"
+#include "core/frontend/detection_options.h"
 #include "core/frontend/edge_crossings.h"
-#include "core/frontend/front_end_observer.h"
-#include "core/frontend/front_end_options.h"
-#include "core/frontend/polarity_delay.h"
 #include "core/frontend/rival_placements.h"
 #include "core/frontend/window_trace.h"
 

@@ -1,7 +1,6 @@
 #include "core/frontend/circle_measurement.h"
 
 #include "core/base/time.h"
-#include "core/frontend/outline_sector.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/frontend/circle_candidate.h"
-#include "core/frontend/event_clusters.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
+#include "core/frontend/normal_flow.h"
 
 #include <cstddef>
 #include <vector>

@@ -1,7 +1,7 @@
 // The front end's options, one table per stage. Lengths in px are the sensor's own pixels.
 #pragma once
 
-#include "core/base/option_struct.h"
+#include "core/base/option_row.h"
 
 namespace evical {
 
@@ -139,6 +139,38 @@ struct ExtentOptions {
   constexpr explicit ExtentOptions(NoDefaults) {}
   bool operator==(const ExtentOptions&) const = default;
   static const OptionTable<ExtentOptions>& table();
+};
+
+// Thresholds of the published candidate source (docs/maths.md, 5.2). Lengths are the sensor's own pixels.
+
+struct NormalFlowOptions {
+  int plane_radius_px;
+  double largest_plane_error_px;
+  double least_plane_inliers;
+  double fastest_px_s;
+  int dilation_px;
+  int least_cluster_px;
+  double largest_pair_angle_deg;
+  double window_travel_px;
+
+  NormalFlowOptions();  // the defaults
+  constexpr explicit NormalFlowOptions(NoDefaults) {}
+  bool operator==(const NormalFlowOptions&) const = default;
+  static const OptionTable<NormalFlowOptions>& table();
+};
+
+// All options of the front end, one struct per stage.
+
+struct FrontEndOptions {
+  DetectionOptions detection;
+  BurstOptions bursts;
+  RingVoteOptions ring_vote;
+  NormalFlowOptions normal_flow;
+  MovingCircleOptions moving_circle;
+  GridOptions grid;
+  TrackingOptions tracking;
+  ExtentOptions extent;
+  bool operator==(const FrontEndOptions&) const = default;
 };
 
 }  // namespace evical

@@ -7,6 +7,40 @@
 #include <optional>
 
 namespace evical {
+
+std::optional<double> PixelLevel::had(const LevelBurst& burst) const {
+  if (burst.rested_before) return 0.0;
+  if (level_ < 0.0f || burst.cut_begin) return std::nullopt;
+  return (burst.brighter ? level_ : 1.0f - level_) * static_cast<float>(whole_[burst.brighter]);
+}
+
+std::optional<PixelLevel::Middle> PixelLevel::pass(const LevelBurst& burst) {
+  constexpr double kOneEnd = 0.5;  // events: nearer to an end than to the next event
+  std::uint16_t& whole = whole_[burst.brighter];
+  const std::optional<double> before = had(burst);
+  const Middle own{0.5 * (burst.events - 1), burst.events};
+  const bool from_end = before && *before < kOneEnd;
+  if (burst.rested_after && from_end) whole = static_cast<std::uint16_t>(burst.events);
+  if (whole == 0 || burst.events >= whole || (!burst.rested_after && !before)) {
+    const bool at_end = burst.rested_after || (whole > 0 && burst.events >= whole);
+    level_ = kUnknown;
+    if (at_end) set(burst.brighter, 1.0);
+    return own;
+  }
+  const double missing = whole - burst.events;
+  const double fired = burst.rested_after ? missing : std::clamp(*before, 0.0, missing);
+  set(burst.brighter, (fired + burst.events) / whole);
+  const double event = 0.5 * (whole - 1) - fired;
+  if (event < 0.0 || event > burst.events - 1) return std::nullopt;
+  return Middle{event, whole};
+}
+
+void PixelLevel::step(bool brighter, int events) {
+  if (level_ < 0.0f || whole_[brighter] == 0) return;
+  const float part = static_cast<float>(events) / static_cast<float>(whole_[brighter]);
+  level_ = std::clamp(level_ + (brighter ? part : -part), 0.0f, 1.0f);
+}
+
 namespace {
 
 // A burst lasts from about 1.2 px before the edge is in the pixel's middle to 1.2 px after. An edge with
@@ -190,6 +224,29 @@ void BurstExtractor::finish(std::vector<EdgeCrossing>& bursts) {
   for (const Check& check : checks_) pixels_[check.pixel].events = 0;
   checks_.clear();
   complete_until_ns_ = std::numeric_limits<std::int64_t>::max();
+}
+
+void PolarityDelayFit::add(double speed_px_s, double radius_offset_px) {
+  constexpr double kSlow_px_s = 20.0;  // bursts of slower edges are displaced (docs/maths.md, 9.1)
+  if (!(speed_px_s >= kSlow_px_s)) return;
+  count_ += 1.0;
+  speed_ += speed_px_s;
+  offset_ += radius_offset_px;
+  speed2_ += speed_px_s * speed_px_s;
+  offset2_ += radius_offset_px * radius_offset_px;
+  product_ += speed_px_s * radius_offset_px;
+}
+
+std::optional<PolarityDelay> PolarityDelayFit::result(CircleShade shade) const {
+  constexpr double kLeastWindows = 20.0, kLeastSpread_px_s = 5.0;
+  if (count_ < kLeastWindows) return std::nullopt;
+  const double spread = speed2_ - speed_ * speed_ / count_;
+  if (!(spread > count_ * kLeastSpread_px_s * kLeastSpread_px_s)) return std::nullopt;
+  const double slope_s = (product_ - speed_ * offset_ / count_) / spread;
+  const double scatter2 = std::max(0.0, offset2_ - offset_ * offset_ / count_ - slope_s * slope_s * spread);
+  const double sigma_s = std::sqrt(scatter2 / ((count_ - 2.0) * spread));
+  const double sign = shade == CircleShade::Dark ? 1.0 : -1.0;
+  return PolarityDelay{2.0 * sign * slope_s, 2.0 * sigma_s};
 }
 
 }  // namespace evical

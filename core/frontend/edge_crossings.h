@@ -3,18 +3,58 @@
 // (docs/maths.md, 4).
 #pragma once
 
-#include "core/data/event.h"
 #include "core/frontend/detection_options.h"
-#include "core/frontend/pixel_level.h"
+
+#include "core/data/board_observations.h"
+#include "core/data/event.h"
+#include "core/geometry/board.h"
 #include "core/geometry/resolution.h"
 
 #include <array>
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace evical {
+
+// Level of a pixel between its darkest and its brightest; every event is a step of it. The level determines
+// when an edge that turned back before leaving the pixel, or had not left it before, was in the pixel's
+// middle (docs/maths.md, 4.1).
+
+// Data of a pixel's burst for its level.
+struct LevelBurst {
+  bool brighter;
+  int events;
+  bool cut_begin;                    // events before it were considered noise
+  bool rested_before, rested_after;  // the edge was out of the pixel's reach
+};
+
+class PixelLevel {
+ public:
+  struct Middle {
+    double event;      // with the edge in the pixel's middle: from 0, fractional between two events
+    int whole_events;  // estimated number of events of an edge that crosses the pixel completely
+  };
+
+  // Empty if the edge was not in the middle during the burst. Bursts with unknown time before or after are
+  // treated as complete.
+  std::optional<Middle> pass(const LevelBurst& burst);
+  // Update by events that are too few for a burst.
+  void step(bool brighter, int events);
+
+ private:
+  static constexpr float kUnknown = -1.0f;
+
+  // Number of a complete burst's events that the edge had already fired at its present place.
+  std::optional<double> had(const LevelBurst& burst) const;
+  void set(bool brighter, double part) { level_ = static_cast<float>(brighter ? part : 1.0 - part); }
+
+  std::array<std::uint16_t, 2> whole_ = {0,
+                                         0};  // events of the last complete burst, by polarity; 0: none yet
+  float level_ = kUnknown;                    // 0 dark, 1 bright
+};
 
 struct EdgeCrossing {
   std::int64_t time_ns;      // median of its events' times, including those missing at a turning edge
@@ -93,6 +133,27 @@ class BurstExtractor {
   std::deque<Check> checks_;
   std::int64_t complete_until_ns_, last_event_ns_ = kNever;
   std::uint64_t event_count_ = 0;
+};
+
+// Delay of pixels for edges that brighten them, minus that for edges that darken them: a sign of low light,
+// or of slow biases. Bursts are behind their edge by the pixel's delay times the edge's speed. Of a circle's
+// leading and trailing edges one brightens and one darkens, so circles seem to grow or to shrink in
+// proportion to their speed:
+//   radius offset = r0 + s (d_brightening - d_darkening) / 2 * speed,  s = 1 for dark circles, -1 for bright ones.
+// docs/maths.md, 10.1.
+
+class PolarityDelayFit {
+ public:
+  // Adds one window: the speed of the board's image, and the distance of bursts outside the circles' edges,
+  // both in the sensor's pixels. Edges that hardly move are ignored.
+  void add(double speed_px_s, double radius_offset_px);
+
+  // Empty for few windows, or for one speed. The sigma assumes independent errors of windows.
+  std::optional<PolarityDelay> result(CircleShade shade) const;
+
+ private:
+  double count_ = 0.0, speed_ = 0.0, offset_ = 0.0;  // sums
+  double speed2_ = 0.0, offset2_ = 0.0, product_ = 0.0;
 };
 
 }  // namespace evical

@@ -3,7 +3,7 @@
 // edges do not have to cross the neighbourhood within a window: slow edges have as much time as fast ones.
 #pragma once
 
-#include "core/base/option_struct.h"
+#include "core/base/option_row.h"
 #include "core/data/edge_slope.h"
 #include "core/frontend/burst_window.h"
 #include "core/frontend/edge_crossings.h"

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "core/frontend/burst_window.h"
-#include "core/frontend/normal_flow_options.h"
+#include "core/frontend/detection_options.h"
+
+#include "core/geometry/resolution.h"
 
 #include <Eigen/Core>
 
@@ -56,5 +58,25 @@ using NormalFlowField = std::vector<NormalFlow>;
 // needs a border of at least plane_radius_px. Deviations from the plane are compared with the distance that
 // the edge travels in that time, so slow and fast edges are treated alike.
 NormalFlowField estimateNormalFlow(const ActiveEventSurface& surface, const NormalFlowOptions& options);
+
+// Connected regions of normal flow, classified as parts of a moving circle (docs/maths.md, 5.2; S.
+// Chen et al., "eKalibr", 2501.05688).
+
+enum class ClusterKind {
+  Run,    // flows diverge: leading arc
+  Chase,  // flows converge: trailing arc
+  Other,
+};
+
+struct EventCluster {
+  bool leading = false;              // by polarity
+  std::vector<std::uint32_t> flows;  // indices into the field
+  Eigen::Vector2d centroid_px = Eigen::Vector2d::Zero();
+  Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  // of the mean flow, unit
+  ClusterKind kind = ClusterKind::Other;
+};
+
+std::vector<EventCluster> clusterFlow(const NormalFlowField& field, Resolution resolution_px,
+                                      const NormalFlowOptions& options);
 
 }  // namespace evical

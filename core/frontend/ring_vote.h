@@ -6,7 +6,7 @@
 
 #include "core/frontend/burst_window.h"
 #include "core/frontend/circle_candidate.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 
 #include <vector>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/frontend/board_motion.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/frontend/window_trace.h"
 
 #include <Eigen/Core>

@@ -1,8 +1,8 @@
 // Writes a picture of every n-th window that the front end processes.
 #pragma once
 
-#include "core/frontend/front_end_observer.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
+#include "core/frontend/window_trace.h"
 
 #include <filesystem>
 

@@ -1,7 +1,7 @@
 #include "core/frontend/window_trace.h"
 
 #include "core/base/time.h"
-#include "core/frontend/board_motion_from_points.h"
+#include "core/frontend/board_motion.h"
 #include "core/frontend/board_placement.h"
 #include "core/geometry/homography.h"
 

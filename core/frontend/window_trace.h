@@ -2,10 +2,11 @@
 // show its last stage and the reason.
 #pragma once
 
-#include "core/data/board_observations.h"
 #include "core/frontend/board_motion.h"
 #include "core/frontend/circle_measurement.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
+
+#include "core/data/board_observations.h"
 
 #include <cstdint>
 #include <optional>
@@ -70,5 +71,19 @@ const BoardView* viewToTrackFrom(const BoardObservations& observations, double t
 // The board's motion at a view. Views store less than the tracker does, so the motion is fitted again to the
 // bursts around it.
 std::optional<BoardMotion> motionAtView(const TrackingInput& input, const BoardView& view);
+
+// Observer of the front end, for drawings and live views.
+
+class BurstWindow;
+struct BoardSearch;
+struct WindowTrace;
+
+// Receives every window when it is processed. Called from the thread that adds events.
+class FrontEndObserver {
+ public:
+  virtual ~FrontEndObserver() = default;
+  virtual void windowTracked(const BurstWindow& window, const WindowTrace& trace) = 0;
+  virtual void windowSearched(const BoardSearch& search, std::int64_t middle_ns) = 0;
+};
 
 }  // namespace evical

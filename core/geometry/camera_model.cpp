@@ -1,10 +1,9 @@
 #include "core/geometry/camera_model.h"
 
 #include "core/base/error.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/pinhole_distortion.h"
 #include "core/geometry/sphere_lens.h"
-#include "core/geometry/undistortion_table.h"
 #include "core/numerics/angles.h"
 
 #include <fmt/format.h>

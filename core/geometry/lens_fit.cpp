@@ -1,7 +1,7 @@
 #include "core/geometry/lens_fit.h"
 
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/camera_model.h"
-#include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/sphere_lens.h"
 #include "core/numerics/angles.h"
 

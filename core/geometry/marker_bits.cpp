@@ -2,11 +2,15 @@
 
 #include "core/base/error.h"
 
+#include <apriltag/apriltag.h>
+#include <apriltag/tag36h11.h>
 #include <fmt/format.h>
 #include <opencv2/aruco.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <memory>
 
 namespace evical {
 namespace {
@@ -57,6 +61,29 @@ std::vector<PatternBits> firstMarkers(const std::string& dictionary, int count) 
   std::vector<PatternBits> markers;
   for (int id = 0; id < count; ++id) markers.push_back(bitsOf(*all, id));
   return markers;
+}
+
+std::vector<BoardSquare> charucoMarkers(const Board& board, bool first_is_bright) {
+  std::vector<BoardSquare> markers;
+  for (int row = 0; row < board.rows; ++row)
+    for (int col = 0; col < board.cols; ++col)
+      if (((row + col) % 2 == 0) == first_is_bright) markers.push_back({row, col});
+  return markers;
+}
+
+Eigen::Vector2d squareCorner_m(const Board& board, const BoardSquare& square) {
+  return board.spacing_m * Eigen::Vector2d(square.col - 1, square.row - 1);
+}
+
+std::vector<TagBits> firstTags(int count) {
+  const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag36h11_create(),
+                                                                                tag36h11_destroy);
+  std::vector<TagBits> tags(static_cast<std::size_t>(std::clamp(count, 0, static_cast<int>(family->ncodes))));
+  for (std::size_t id = 0; id < tags.size(); ++id)
+    for (std::uint32_t bit = 0; bit < family->nbits; ++bit)  // coordinates include the border of 1 bit
+      tags[id].setBright(static_cast<int>(family->bit_y[bit]) - 1, static_cast<int>(family->bit_x[bit]) - 1,
+                         (family->codes[id] >> (family->nbits - 1 - bit) & 1) != 0);
+  return tags;
 }
 
 }  // namespace evical

@@ -1,6 +1,9 @@
 // The markers of ChArUco boards: ArUco's dictionaries.
 #pragma once
 
+#include "core/geometry/board.h"
+
+#include <bitset>
 #include <string>
 #include <vector>
 
@@ -15,5 +18,37 @@ const std::vector<std::string>& markerNames();  // of dictionaries
 // The first `count` markers by number. Throws CalibrationError (BadInput) if the dictionary does not exist,
 // or has fewer.
 std::vector<PatternBits> firstMarkers(const std::string& dictionary, int count);
+
+// Places of a ChArUco board's markers: in its bright squares, numbered row by row from the top left.
+
+struct BoardSquare {
+  int row = 0, col = 0;
+};
+
+// By number. The top left square is dark, unless `first_is_bright`: OpenCV before 4.6 drew boards with an
+// even number of rows in this way, which it calls legacy.
+std::vector<BoardSquare> charucoMarkers(const Board& board, bool first_is_bright);
+
+// Top left corner of a square, in the board's frame, whose origin is the first inner corner.
+Eigen::Vector2d squareCorner_m(const Board& board, const BoardSquare& square);
+
+// The tags of AprilGrids: the family 36h11.
+
+inline constexpr int kTagSide_bits = 6;  // without the border
+
+// Bright bits of a tag, row by row from its top left, without the border.
+class TagBits {
+ public:
+  bool isBright(int row, int col) const { return bright_[place(row, col)]; }
+  void setBright(int row, int col, bool bright) { bright_[place(row, col)] = bright; }
+
+ private:
+  static std::size_t place(int row, int col) { return static_cast<std::size_t>(row * kTagSide_bits + col); }
+
+  std::bitset<kTagSide_bits * kTagSide_bits> bright_;
+};
+
+// The first `count` tags by number; at most the 587 of the family.
+std::vector<TagBits> firstTags(int count);
 
 }  // namespace evical

@@ -1,5 +1,8 @@
 #include "core/geometry/so3.h"
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
 #include <cmath>
 
 namespace evical {
@@ -114,6 +117,15 @@ Eigen::Matrix3d so3RightJacobianInverse(const Eigen::Vector3d& rotation_vector_r
 
 Eigen::Quaterniond rotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
+BestRotation bestRotation(const Eigen::Matrix3d& sum_of_products, double determinant) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum_of_products, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d free = svd.matrixU() * svd.matrixV().transpose();
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+  if (free.determinant() * determinant < 0.0) signs[2] = -1.0;
+  return {svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose(), svd.singularValues(),
+          svd.matrixU().col(0)};
 }
 
 }  // namespace evical

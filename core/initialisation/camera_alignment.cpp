@@ -2,7 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/data/unfit_samples.h"
 #include "core/initialisation/camera_imu_rotation.h"
 #include "core/initialisation/initialisation_checks.h"

@@ -1,6 +1,5 @@
 #include "core/initialisation/camera_imu_rotation.h"
 
-#include "core/geometry/best_rotation.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/robust.h"
 

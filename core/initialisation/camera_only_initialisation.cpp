@@ -1,7 +1,7 @@
 #include "core/initialisation/camera_only_initialisation.h"
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/geometry/so3.h"
 #include "core/initialisation/camera_alignment.h"
 #include "core/initialisation/camera_trajectory.h"

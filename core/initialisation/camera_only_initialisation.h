@@ -6,7 +6,6 @@
 #include "core/initialisation/camera_poses.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/initialise.h"
-#include "core/initialisation/mean_pose.h"
 
 #include <optional>
 #include <vector>

@@ -6,7 +6,6 @@
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"
 #include "core/initialisation/camera_poses.h"
-#include "core/initialisation/mean_pose.h"
 
 #include <cstdint>
 #include <optional>

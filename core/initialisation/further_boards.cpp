@@ -1,7 +1,7 @@
 #include "core/initialisation/further_boards.h"
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/geometry/trajectory.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/robust.h"

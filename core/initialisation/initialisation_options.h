@@ -1,7 +1,7 @@
 // Options of initialisation.
 #pragma once
 
-#include "core/base/option_struct.h"
+#include "core/base/option_row.h"
 
 namespace evical {
 

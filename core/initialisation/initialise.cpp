@@ -1,7 +1,7 @@
 #include "core/initialisation/initialise.h"
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/data/calibration_observer.h"
 #include "core/data/unfit_samples.h"
 #include "core/initialisation/additional_imus.h"

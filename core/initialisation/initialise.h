@@ -7,8 +7,8 @@
 #include "core/data/calibration_state.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/mirror_check.h"
-#include "core/initialisation/piecewise_time_offset.h"
 #include "core/initialisation/rotation_agreement.h"
+#include "core/initialisation/time_offset.h"
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "core/initialisation/rotation_agreement.h"
 
-#include "core/geometry/best_rotation.h"
+#include "core/geometry/so3.h"
 #include "core/numerics/robust.h"
 
 #include <algorithm>

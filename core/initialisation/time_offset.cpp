@@ -2,8 +2,11 @@
 
 #include "core/numerics/robust.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace evical {
@@ -138,6 +141,161 @@ std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& p
   const auto most = static_cast<std::size_t>(options.most_time_offsets);
   if (peaks.size() > most) peaks.resize(most);
   return peaks;
+}
+
+namespace {
+
+constexpr double kPart_s = 1.5;           // some oscillations of a hand
+constexpr std::size_t kPairsOfPart = 30;  // hardly more are independent
+constexpr double kPartGrid_s = 0.01, kReach_s = 0.3;
+
+class Part {
+ public:
+  Part(std::vector<RotationPair> pairs, const GyroRotation& gyro, const RelativeRotation& whole)
+      : pairs_(std::move(pairs)), gyro_(gyro), whole_(whole) {}
+
+  std::optional<OffsetPart> offset() const {
+    double best_s = whole_.time_offset_s, least = std::numeric_limits<double>::infinity();
+    for (double shift_s = -kReach_s; shift_s <= kReach_s; shift_s += kPartGrid_s) {
+      const double cost = medianError_rad(whole_.time_offset_s + shift_s);
+      if (cost >= least) continue;
+      least = cost;
+      best_s = whole_.time_offset_s + shift_s;
+    }
+    OffsetPart part{pairs_.front().from_s, pairs_.back().to_s, best_s, 0.0};
+    constexpr int kSteps = 6;
+    for (int k = 0; k < kSteps; ++k)
+      if (!refine(part)) return std::nullopt;
+    return part;
+  }
+
+ private:
+  Eigen::Vector3d error_rad(const RotationPair& pair, double offset_s) const {
+    return gyro_.between(pair.from_s + offset_s, pair.to_s + offset_s) -
+           whole_.reference_from_sensor * pair.seen_rad -
+           whole_.gyroscope_bias_rad_s * (pair.to_s - pair.from_s);
+  }
+  double medianError_rad(double offset_s) const {
+    std::vector<double> errors;
+    errors.reserve(pairs_.size());
+    for (const RotationPair& pair : pairs_) errors.push_back(error_rad(pair, offset_s).norm());
+    return medianOf(std::move(errors));
+  }
+  // One Gauss-Newton step with Cauchy weights; false if nothing is determined.
+  bool refine(OffsetPart& part) const {
+    constexpr double kDelta_s = 1e-3;
+    const double scale_rad = std::max(medianError_rad(part.time_offset_s), 1e-6);
+    double matrix = 0.0, vector = 0.0;
+    for (const RotationPair& pair : pairs_) {
+      const Eigen::Vector3d error = error_rad(pair, part.time_offset_s);
+      const Eigen::Vector3d slope =
+          (error_rad(pair, part.time_offset_s + kDelta_s) - error_rad(pair, part.time_offset_s - kDelta_s)) /
+          (2.0 * kDelta_s);
+      const double weight = cauchyWeight(error.squaredNorm() / (scale_rad * scale_rad));
+      matrix += weight * slope.squaredNorm();
+      vector -= weight * slope.dot(error);
+    }
+    if (!(matrix > 0.0)) return false;
+    part.time_offset_s += std::clamp(vector / matrix, -kPartGrid_s, kPartGrid_s);
+    part.time_offset_std_s = scale_rad / std::sqrt(matrix);
+    return true;
+  }
+
+  std::vector<RotationPair> pairs_;
+  const GyroRotation& gyro_;
+  const RelativeRotation& whole_;
+};
+
+std::vector<RotationPair> thinned(const std::vector<RotationPair>& pairs) {
+  std::vector<RotationPair> few;
+  const double stride = std::max(1.0, static_cast<double>(pairs.size()) / kPairsOfPart);
+  for (double place = 0.0; place < static_cast<double>(pairs.size()); place += stride)
+    few.push_back(pairs[static_cast<std::size_t>(place)]);
+  return few;
+}
+
+// Weighted mean of parts, and their normalised residuals. Squares are limited, since a part may have a large
+// error.
+struct PartLevel {
+  double offset_s = 0.0, std_s = 0.0, chi2 = 0.0;
+};
+
+PartLevel levelOf(const std::vector<OffsetPart>& parts, std::size_t begin, std::size_t end) {
+  constexpr double kLeastSigma_s = 2e-4, kMostSigmas = 6.0;
+  std::vector<double> offsets;
+  for (std::size_t k = begin; k < end; ++k) offsets.push_back(parts[k].time_offset_s);
+  const double centre_s = medianOf(std::move(offsets));
+  double weights = 0.0, sum = 0.0;
+  PartLevel level;
+  for (std::size_t k = begin; k < end; ++k) {
+    const double sigma_s = std::max(parts[k].time_offset_std_s, kLeastSigma_s);
+    const double off = (parts[k].time_offset_s - centre_s) / sigma_s;
+    level.chi2 += std::min(off * off, kMostSigmas * kMostSigmas);
+    if (std::abs(off) > kMostSigmas) continue;
+    weights += 1.0 / (sigma_s * sigma_s);
+    sum += parts[k].time_offset_s / (sigma_s * sigma_s);
+  }
+  level.offset_s = weights > 0.0 ? sum / weights : centre_s;
+  level.std_s = weights > 0.0 ? 1.0 / std::sqrt(weights) : std::numeric_limits<double>::infinity();
+  return level;
+}
+
+// Residuals of the best straight line, for drifting clocks.
+double chi2OfLine(const std::vector<OffsetPart>& parts) {
+  Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d vector = Eigen::Vector2d::Zero();
+  for (const OffsetPart& part : parts) {
+    const Eigen::Vector2d row(1.0, part.begin_s);
+    matrix += row * row.transpose();
+    vector += row * part.time_offset_s;
+  }
+  const Eigen::Vector2d line = matrix.ldlt().solve(vector);
+  std::vector<OffsetPart> rest = parts;
+  for (OffsetPart& part : rest) part.time_offset_s -= line[0] + line[1] * part.begin_s;
+  return levelOf(rest, 0, rest.size()).chi2;
+}
+
+}  // namespace
+
+std::vector<OffsetPart> offsetsByParts(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
+                                       const RelativeRotation& whole, const InitialisationOptions& options) {
+  std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
+  std::erase_if(pairs, [&](const RotationPair& pair) {
+    return !gyro.covers(pair.from_s + whole.time_offset_s - kReach_s - kPartGrid_s,
+                        pair.to_s + whole.time_offset_s + kReach_s + kPartGrid_s);
+  });
+  std::vector<OffsetPart> parts;
+  constexpr std::size_t kLeastPairs = 8;
+  for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
+    while (end < pairs.size() && pairs[end].from_s < pairs[begin].from_s + kPart_s) ++end;
+    if (end - begin < kLeastPairs) continue;
+    const std::vector<RotationPair> own(pairs.begin() + static_cast<std::ptrdiff_t>(begin),
+                                        pairs.begin() + static_cast<std::ptrdiff_t>(end));
+    if (const auto part = Part(thinned(own), gyro, whole).offset()) parts.push_back(*part);
+  }
+  return parts;
+}
+
+std::optional<ClockStep> findClockStep(const std::vector<OffsetPart>& parts) {
+  constexpr double kSure_sigmas = 6.0, kLeastStep_s = 2e-3;
+  constexpr std::size_t kLeastParts = 2;  // on either side: a single part may be wrong
+  const double one_level = levelOf(parts, 0, parts.size()).chi2;
+  std::optional<ClockStep> best;
+  double least = one_level;
+  for (std::size_t k = kLeastParts; k + kLeastParts <= parts.size(); ++k) {
+    const PartLevel before = levelOf(parts, 0, k), after = levelOf(parts, k, parts.size());
+    if (before.chi2 + after.chi2 >= least) continue;
+    least = before.chi2 + after.chi2;
+    const double step_s = after.offset_s - before.offset_s;
+    best = ClockStep{parts[k].begin_s, step_s, std::abs(step_s) / std::hypot(before.std_s, after.std_s),
+                     2 * k >= parts.size()};
+  }
+  // The residual of two levels must be noise; for drifting clocks it is not.
+  constexpr double kFarBetter = 0.5;
+  if (!best || best->sigmas < kSure_sigmas || std::abs(best->step_s) < kLeastStep_s ||
+      least > kFarBetter * std::min(one_level, chi2OfLine(parts)))
+    return std::nullopt;
+  return best;
 }
 
 }  // namespace evical

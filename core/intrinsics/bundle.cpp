@@ -1,8 +1,8 @@
 #include "core/intrinsics/bundle.h"
 
 #include "core/geometry/sphere_lens.h"
-#include "core/intrinsics/board_pose.h"
 #include "core/intrinsics/circle_centre_cost.h"
+#include "core/intrinsics/sensor_views.h"
 #include "core/numerics/robust.h"
 #include "core/numerics/solver_stop.h"
 

@@ -7,7 +7,6 @@
 #include "core/intrinsics/intrinsics_checks.h"
 #include "core/intrinsics/intrinsics_start.h"
 #include "core/intrinsics/intrinsics_uncertainty.h"
-#include "core/intrinsics/view_selection.h"
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>

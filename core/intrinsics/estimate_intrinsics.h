@@ -9,7 +9,6 @@
 #include "core/base/progress.h"
 #include "core/data/board_observations.h"
 #include "core/data/intrinsics_result.h"
-#include "core/data/intrinsics_story.h"
 #include "core/geometry/board.h"
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/intrinsics/sensor_views.h"

@@ -1,7 +1,7 @@
 // Options of the calibration of camera intrinsics.
 #pragma once
 
-#include "core/base/option_struct.h"
+#include "core/base/option_row.h"
 
 namespace evical {
 

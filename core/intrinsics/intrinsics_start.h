@@ -1,10 +1,11 @@
 // Start values of the bundle adjustment.
 #pragma once
 
+#include "core/intrinsics/sensor_views.h"
+
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/resolution.h"
-#include "core/intrinsics/sensor_views.h"
 
 #include <optional>
 #include <vector>
@@ -30,5 +31,12 @@ std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& vi
 CameraIntrinsics roughStart(const std::vector<SensorView>& views, const Board& board,
                             Resolution resolution_px,
                             const std::optional<CameraIntrinsics>& detection_intrinsics);
+
+// Selection of the most informative views of a recording: spread over the image and over the board's tilt.
+
+// At most options.most_views of them, in time order; deterministic. Tilts are computed with `camera`, which
+// may be approximate.
+std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const Board& board,
+                                    const CameraIntrinsics& camera, const IntrinsicsOptions& options);
 
 }  // namespace evical

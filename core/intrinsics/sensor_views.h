@@ -2,10 +2,12 @@
 // view is moved to the view's time with its own velocity.
 #pragma once
 
+#include "core/intrinsics/intrinsics_options.h"
+
 #include "core/data/board_observations.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "core/intrinsics/intrinsics_options.h"
+#include "core/geometry/rigid_transform.h"
 
 #include <Eigen/Core>
 
@@ -33,5 +35,12 @@ struct SensorView {
 std::vector<SensorView> sensorViews(const BoardObservations& observations, const Board& board,
                                     const std::optional<CameraIntrinsics>& detection_intrinsics,
                                     const IntrinsicsOptions& options);
+
+// Pose of the board in one view, from its circles' centres and a camera model.
+
+// camera_from_board; empty if the circles do not determine a pose. The better-fitting one of a plane's two
+// poses.
+std::optional<RigidTransform> boardPose(const SensorView& view, const Board& board,
+                                        const CameraIntrinsics& camera);
 
 }  // namespace evical

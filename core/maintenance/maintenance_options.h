@@ -1,7 +1,7 @@
 // Options of the maintenance with logs of IMUs, and thresholds of a change.
 #pragma once
 
-#include "core/base/option_struct.h"
+#include "core/base/option_row.h"
 
 namespace evical {
 

@@ -2,9 +2,9 @@
 // gyroscope measures its bias. docs/maths.md, 15.1.
 #pragma once
 
+#include "core/data/assessment.h"
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_state.h"
-#include "core/data/maintenance.h"
 #include "core/maintenance/stop_detection.h"
 #include "core/numerics/change_test.h"
 

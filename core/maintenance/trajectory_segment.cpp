@@ -1,6 +1,5 @@
 #include "core/maintenance/trajectory_segment.h"
 
-#include "core/geometry/best_rotation.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/band_cholesky.h"
 #include "core/numerics/chi_squared.h"

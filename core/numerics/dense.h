@@ -2,7 +2,11 @@
 // them; here they are compiled once.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
 
 namespace evical {
 
@@ -16,5 +20,32 @@ Eigen::MatrixXd inverseOf(const Eigen::MatrixXd& square);
 Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 Eigen::MatrixXd productTransposed(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);  // a b^T
 Eigen::MatrixXd congruence(const Eigen::MatrixXd& a, const Eigen::MatrixXd& m);         // a m a^T
+
+// Inverse of symmetric matrices whose columns have different units: scaled to a unit diagonal before
+// factorisation.
+
+class ScaledInverse {
+ public:
+  explicit ScaledInverse(const Eigen::MatrixXd& symmetric)
+      : scale_(symmetric.diagonal().cwiseMax(kLeastDiagonal).cwiseSqrt().cwiseInverse()),
+        solver_(scale_.asDiagonal() * symmetric * scale_.asDiagonal()) {}
+
+  Eigen::MatrixXd times(const Eigen::MatrixXd& right) const {
+    return scale_.asDiagonal() * solver_.solve(scale_.asDiagonal() * right);
+  }
+  Eigen::VectorXd times(const Eigen::VectorXd& right) const {
+    return scale_.cwiseProduct(solver_.solve(scale_.cwiseProduct(right)));
+  }
+  double sigma(Eigen::Index i) const {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(scale_.size(), i);
+    return std::sqrt(std::max(0.0, times(unit)[i]));
+  }
+
+ private:
+  static constexpr double kLeastDiagonal = 1e-300;
+
+  Eigen::VectorXd scale_;
+  Eigen::LDLT<Eigen::MatrixXd> solver_;
+};
 
 }  // namespace evical

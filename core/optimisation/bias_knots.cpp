@@ -1,7 +1,5 @@
 #include "core/optimisation/bias_knots.h"
 
-#include "core/optimisation/jacobian_rows.h"
-
 #include <algorithm>
 #include <cmath>
 

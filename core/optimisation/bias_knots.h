@@ -3,13 +3,15 @@
 // spacing), a random walk's step.
 #pragma once
 
-#include "core/data/calibration_setup.h"
-#include "core/data/calibration_state.h"
 #include "core/optimisation/inertial_cost.h"
 #include "core/optimisation/optimisation_options.h"
 
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+
 #include <ceres/problem.h>
 #include <ceres/sized_cost_function.h>
+#include <Eigen/Core>
 
 #include <optional>
 #include <vector>
@@ -53,5 +55,22 @@ std::optional<DriftTimes> appendDriftBlocks(const BiasDrift& drift, std::vector<
 std::vector<ceres::ResidualBlockId> addDriftPriors(ceres::Problem& problem,
                                                    const OptimisationOptions& options, const ImuNoise& noise,
                                                    ImuState& imu);
+
+// Position of a measurement's rows in Ceres' row-major Jacobian blocks, as a cost function writes them.
+
+template <int Rows, int Columns>
+auto jacobianRows(double** jacobians, int block, Eigen::Index first_row) {
+  constexpr int kOrder = Columns == 1 ? Eigen::ColMajor : Eigen::RowMajor;
+  return Eigen::Map<Eigen::Matrix<double, Rows, Columns, kOrder>>(jacobians[block] + first_row * Columns);
+}
+
+// A quaternion block, so3_manifold.h: the last of the four columns is unused.
+template <int Rows>
+void writeRotationRows(double** jacobians, int block, Eigen::Index first_row,
+                       const Eigen::Matrix<double, Rows, 3>& by_delta) {
+  auto rows = jacobianRows<Rows, 4>(jacobians, block, first_row);
+  rows.template leftCols<3>() = by_delta;
+  rows.col(3).setZero();
+}
 
 }  // namespace evical

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/optimisation/parameter_blocks.h"
-#include "core/optimisation/pixel_errors.h"
 #include "core/optimisation/problem_builder.h"
 #include "core/optimisation/so3_manifold.h"
+#include "core/optimisation/view_circles.h"
 #include "core/optimisation/view_cost.h"
 
 #include <ceres/problem.h>

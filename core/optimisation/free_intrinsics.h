@@ -8,9 +8,9 @@
 #pragma once
 
 #include "core/data/camera_lens.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/circle_conic.h"
-#include "core/geometry/intrinsics_numbers.h"
 
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
@@ -65,5 +65,12 @@ class IntrinsicsBlock {
   IntrinsicsMatrix prior_weight_;              // residual from deviation
   std::unique_ptr<ceres::Manifold> manifold_;  // null if all nine are used
 };
+
+// Prior on a free lens.
+
+struct OptimisationOptions;
+
+// All nine intrinsics around the detection intrinsics, with the sigmas given for the lens, otherwise weak.
+IntrinsicsMatrix lensPriorCovariance(const CameraLens& lens, const OptimisationOptions& options);
 
 }  // namespace evical

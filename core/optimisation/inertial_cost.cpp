@@ -1,7 +1,7 @@
 #include "core/optimisation/inertial_cost.h"
 
 #include "core/geometry/so3.h"
-#include "core/optimisation/jacobian_rows.h"
+#include "core/optimisation/bias_knots.h"
 
 namespace evical {
 namespace {

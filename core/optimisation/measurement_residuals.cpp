@@ -5,7 +5,7 @@
 #include "core/geometry/pose_times.h"
 #include "core/optimisation/bias_knots.h"
 #include "core/optimisation/inertial_cost.h"
-#include "core/optimisation/sample_runs.h"
+#include "core/optimisation/sample_errors.h"
 #include "core/optimisation/view_circles.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 // the current time offsets.
 #pragma once
 
-#include "core/optimisation/pixel_errors.h"
 #include "core/optimisation/problem_builder.h"
+#include "core/optimisation/view_circles.h"
 #include "core/optimisation/view_cost.h"
 
 namespace evical {

@@ -1,7 +1,7 @@
 // Options of the batch optimisation, in four groups; code that needs one group takes only that group.
 #pragma once
 
-#include "core/base/option_struct.h"
+#include "core/base/option_row.h"
 
 namespace evical {
 

@@ -39,7 +39,7 @@
 #pragma once
 
 #include "core/data/calibration_state.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/spline_segment.h"
 #include "core/optimisation/displacement_field.h"
 #include "core/optimisation/edge_localisation_bias.h"

@@ -1,9 +1,7 @@
 #include "core/printing/board_squares.h"
 
 #include "core/base/error.h"
-#include "core/geometry/charuco_layout.h"
 #include "core/geometry/marker_bits.h"
-#include "core/geometry/tag_bits.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 
 #include "core/base/error.h"
 #include "core/base/number.h"
-#include "core/recording/event_order.h"
 
 #include <fmt/format.h>
 
@@ -170,6 +169,64 @@ void BlockReader::addFault(FaultKind kind, std::string text) {
 double BlockReader::fractionRead() const {
   if (finished_ || file_size_ == 0) return 1.0;
   return std::min(1.0, static_cast<double>(position_) / static_cast<double>(file_size_));
+}
+
+std::size_t EventOrder::arrange(std::span<Event> events) {
+  const std::uint64_t before = disordered_;
+  std::size_t end = events.empty() ? 0 : 1;
+  for (; end < events.size(); ++end) {
+    const std::int64_t back_ns = events[end - 1].time_ns - events[end].time_ns;
+    if (back_ns <= 0) continue;
+    if (back_ns > kLargestSorted_ns) break;
+    ++disordered_;
+    largest_ns_ = std::max(largest_ns_, back_ns);
+  }
+  if (disordered_ != before) {
+    std::stable_sort(events.begin(), events.begin() + static_cast<std::ptrdiff_t>(end),
+                     [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; });
+  }
+  return end;
+}
+
+void EventOrder::split(std::vector<Event>& events, std::vector<Event>& rest) {
+  const auto step = events.begin() + static_cast<std::ptrdiff_t>(arrange(events));
+  rest.assign(step, events.end());
+  events.erase(step, events.end());
+}
+
+std::string EventOrder::text() const {
+  return fmt::format("Time runs backwards {} within packets, by {:.3f} ms at most; sorted.",
+                     counted(disordered_, "time"), 1e-6 * static_cast<double>(largest_ns_));
+}
+
+namespace {
+
+constexpr std::uint64_t kCachedBlock_bytes = 1 << 20;
+
+}  // namespace
+
+RandomAccessFile::RandomAccessFile(const std::filesystem::path& path) {
+  file_.rdbuf()->pubsetbuf(nullptr, 0);  // the block is the buffer
+  file_.open(path, std::ios::binary | std::ios::ate);
+  if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
+  size_ = static_cast<std::uint64_t>(file_.tellg());
+}
+
+bool RandomAccessFile::read(std::uint64_t position, std::uint64_t count, std::string_view& bytes) {
+  if (position > size_ || count > size_ - position) return false;
+  const bool is_there = position >= block_position_ && position + count <= block_position_ + block_.size();
+  if (!is_there) {
+    block_.resize(static_cast<std::size_t>(std::max(count, std::min(kCachedBlock_bytes, size_ - position))));
+    file_.clear();
+    file_.seekg(static_cast<std::streamoff>(position));
+    file_.read(block_.data(), static_cast<std::streamsize>(block_.size()));
+    block_.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file_.gcount())));
+    block_position_ = position;
+    if (block_.size() < count) return false;
+  }
+  bytes = std::string_view(block_).substr(static_cast<std::size_t>(position - block_position_),
+                                          static_cast<std::size_t>(count));
+  return true;
 }
 
 }  // namespace evical

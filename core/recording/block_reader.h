@@ -6,11 +6,16 @@
 #include "core/recording/block_decoder.h"
 #include "core/recording/recording_reader.h"
 
+#include "core/data/event.h"
+
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evical {
@@ -55,6 +60,46 @@ class BlockReader : public RecordingReader {
   bool frames_wanted_ = false;  // until they are selected
   std::uint64_t disordered_ = 0;
   std::int64_t largest_disorder_ns_ = 0;
+};
+
+// Sorts the events of one stream into the order that packets guarantee, and counts the corrections.
+
+// Largest step back in time that readers sort.
+inline constexpr std::int64_t kLargestSorted_ns = 10'000'000;
+
+class EventOrder {
+ public:
+  // Keeps in `events` those of the next packet: they are sorted if time steps back a little; the packet ends
+  // before a large step back, since sorting would hide it, and the events after it replace `rest`.
+  void split(std::vector<Event>& events, std::vector<Event>& rest);
+
+  bool changedAnything() const { return disordered_ > 0; }
+  std::string text() const;  // one sentence for people
+
+ private:
+  std::size_t arrange(std::span<Event> events);  // number of first events in the packet
+
+  std::uint64_t disordered_ = 0;
+  std::int64_t largest_ns_ = 0;
+};
+
+// Random access to a file's bytes, read in large blocks.
+
+class RandomAccessFile {
+ public:
+  // Throws CalibrationError (BadInput) if the file cannot be opened.
+  explicit RandomAccessFile(const std::filesystem::path& path);
+
+  std::uint64_t size() const { return size_; }  // at opening
+
+  // Bytes, valid until the next call; false unless all of them exist.
+  bool read(std::uint64_t position, std::uint64_t count, std::string_view& bytes);
+
+ private:
+  std::ifstream file_;
+  std::uint64_t size_ = 0;
+  std::string block_;
+  std::uint64_t block_position_ = 0;
 };
 
 }  // namespace evical

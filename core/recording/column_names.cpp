@@ -1,6 +1,6 @@
 #include "core/recording/column_names.h"
 
-#include "core/base/trimmed.h"
+#include "core/base/plain_text.h"
 
 #include <algorithm>
 #include <array>

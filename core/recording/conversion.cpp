@@ -1,7 +1,7 @@
 #include "core/recording/conversion.h"
 
 #include "core/base/error.h"
-#include "core/base/new_folder.h"
+#include "core/base/file_places.h"
 #include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/recording/recording_writer.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/recording/inspection.h"
-#include "core/recording/stamp_step.h"
+#include "core/recording/stray_stamps.h"
 
 #include <cstdint>
 #include <vector>

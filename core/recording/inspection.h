@@ -1,11 +1,12 @@
 // One pass over a recording: its content, and its faults.
 #pragma once
 
+#include "core/recording/imu_statistics.h"
+#include "core/recording/recording_reader.h"
+
 #include "core/base/progress.h"
 #include "core/base/time.h"
 #include "core/data/recording.h"
-#include "core/recording/inspection_options.h"
-#include "core/recording/recording_reader.h"
 
 #include <Eigen/Core>
 
@@ -65,5 +66,10 @@ Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& op
 // Gaps, time running backwards, jitter, stuck or saturated axes, units, invalid numbers. Expects SI units.
 std::vector<RecordingFault> checkImu(const std::string& name, const std::vector<ImuSample>& samples,
                                      const InspectionOptions& options = {});
+
+// Stable JSON of `evical inspect --json`.
+
+// `with_checksums` adds checksums for the comparison of readers.
+std::string inspectionJson(const Inspection& inspection, bool with_checksums);
 
 }  // namespace evical

@@ -2,9 +2,7 @@
 // YAML and JSON.
 #pragma once
 
-#include "core/data/calibration_check.h"
-#include "core/data/maintenance.h"
-#include "core/data/repeatability.h"
+#include "core/data/assessment.h"
 
 #include <string>
 

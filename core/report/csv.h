@@ -1,7 +1,7 @@
 // The result's tables for other programs: comma-separated, with a line of names.
 #pragma once
 
-#include "core/base/text_sink.h"
+#include "core/base/atomic_file.h"
 #include "core/data/calibration_state.h"
 #include "core/report/result_yaml.h"
 

@@ -1,6 +1,5 @@
 #include "core/report/detections_csv.h"
 
-#include "core/report/csv_reader.h"
 #include "core/report/csv_text.h"
 
 #include <fmt/format.h>

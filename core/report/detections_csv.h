@@ -1,7 +1,7 @@
 // Detections of the board as tables, with all digits: reading them back gives identical observations.
 #pragma once
 
-#include "core/base/text_sink.h"
+#include "core/base/atomic_file.h"
 #include "core/data/board_observations.h"
 
 #include <filesystem>

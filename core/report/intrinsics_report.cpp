@@ -2,9 +2,9 @@
 
 #include "core/base/yaml_node.h"
 #include "core/format/intrinsics_yaml.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
+#include "core/report/result_table.h"
 #include "core/report/result_yaml.h"
-#include "core/report/table_row.h"
 
 #include <fmt/format.h>
 

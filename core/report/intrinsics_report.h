@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/data/intrinsics_result.h"
-#include "core/data/intrinsics_story.h"
 
 #include <array>
 #include <string>

@@ -1,7 +1,7 @@
 // Comparison of one recording of a repeat with another one, or with the joint solution.
 #pragma once
 
-#include "core/data/repeatability.h"
+#include "core/data/assessment.h"
 
 #include <cstddef>
 #include <optional>

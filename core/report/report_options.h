@@ -1,7 +1,7 @@
 // Options of the report.
 #pragma once
 
-#include "core/base/option_struct.h"
+#include "core/base/option_row.h"
 
 namespace evical {
 

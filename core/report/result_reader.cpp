@@ -1,11 +1,11 @@
 #include "core/base/yaml_node.h"
-#include "core/data/calibration_stage.h"
+#include "core/data/calibration_observer.h"
 #include "core/data/unit_quaternion.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/format/quantity_yaml.h"
 #include "core/numerics/angles.h"
-#include "core/report/quantity_labels.h"
 #include "core/report/result_yaml.h"
+#include "core/report/shown_quantity.h"
 
 #include <fmt/format.h>
 

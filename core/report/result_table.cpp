@@ -1,11 +1,12 @@
 #include "core/report/result_table.h"
 
-#include "core/base/element.h"
-#include "core/numerics/angles.h"
 #include "core/report/intrinsics_report.h"
 #include "core/report/sensor_pose.h"
 #include "core/report/shown_quantity.h"
-#include "core/report/table_row.h"
+
+#include "core/base/element.h"
+#include "core/base/number.h"
+#include "core/numerics/angles.h"
 
 #include <fmt/format.h>
 
@@ -148,6 +149,13 @@ std::string resultTable(const NamedResult& named) {
       "Time: {:.1f} s (read {:.1f}, detect {:.1f}, initialise {:.1f}, optimise {:.1f}); memory {:.0f} MB\n",
       t.total_s, t.read_s, t.detect_s, t.initialise_s, t.optimise_s, named.result->memory_peak_mb);
   return text + verdict(*named.result);
+}
+
+std::string tableRow(const std::string& name, double value, double sigma, const char* unit, int most) {
+  const int decimals = decimalsFor(sigma, most, most);
+  const std::string shown =
+      sigma > 0.0 ? fmt::format("+- {:<10.{}f}", sigma, decimals) : std::string(13, ' ');
+  return fmt::format("    {:<26}{:>12.{}f} {} {}\n", name, value, decimals, shown, unit);
 }
 
 }  // namespace evical

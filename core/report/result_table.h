@@ -15,4 +15,8 @@ std::string givenOf(const UncertaintyReport& uncertainty, const std::string& sen
 // Roll, pitch, yaw in degrees about x, y, z (R = Rz Ry Rx), for people only.
 Eigen::Vector3d rollPitchYaw_deg(const Eigen::Quaterniond& rotation);
 
+// One row of a table for terminals: a name, a number with its +-, a unit.
+
+std::string tableRow(const std::string& name, double value, double sigma, const char* unit, int decimals = 5);
+
 }  // namespace evical

@@ -1,8 +1,10 @@
 // Calibrated quantities in displayed units, number by number. Tables, the report and the window display them.
 #pragma once
 
-#include "core/data/quantity.h"
 #include "core/report/result_yaml.h"
+
+#include "core/data/quantity.h"
+#include "core/data/quantity_address.h"
 
 #include <string>
 #include <vector>
@@ -36,5 +38,24 @@ std::string unitAndRemark(const ShownQuantity& quantity);
 
 // Elements of a 3 x 3 matrix: scales on the diagonal, misalignments off it.
 bool isScale(const ShownNumber& number);
+
+// Names of estimated numbers, for people and for tables.
+
+// "camera: left, quantity: gyroscope_bias, component: x", as result.yaml has it.
+std::string columnKeys(const QuantityAddress& number, const NamedResult& named);
+
+// "left.gyroscope_bias.x [rad/s]", for all columns of the result's covariance.
+std::vector<std::string> columnNames(const NamedResult& named);
+
+struct QuantityWords {
+  std::string sensor;    // "left"
+  std::string quantity;  // "gyroscope bias"
+  std::string part;      // "x", "xy"; empty if the quantity is one number
+};
+
+QuantityWords quantityWords(const QuantityAddress& number, const NamedResult& named);
+
+// "left: gyroscope bias x"
+std::string quantitySentence(const QuantityWords& words);
 
 }  // namespace evical

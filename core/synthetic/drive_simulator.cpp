@@ -3,7 +3,7 @@
 #include "core/base/time.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
-#include "core/synthetic/imu_faults.h"
+#include "core/synthetic/imu_simulator.h"
 #include "core/synthetic/random.h"
 
 #include <fmt/format.h>

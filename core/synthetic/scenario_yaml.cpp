@@ -1,8 +1,8 @@
 #include "core/synthetic/scenario_yaml.h"
 
 #include "core/base/yaml_node.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/camera_model.h"
-#include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/synthetic/room_scene.h"

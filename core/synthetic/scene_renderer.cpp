@@ -1,7 +1,6 @@
 #include "core/synthetic/scene_renderer.h"
 
 #include "core/geometry/camera_model.h"
-#include "core/geometry/undistortion_table.h"
 
 #include <Eigen/LU>
 

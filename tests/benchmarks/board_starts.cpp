@@ -3,7 +3,7 @@
 // at random times of it, with the whole board visible, and with a third of it silent at first, along its
 // columns or its rows. Fails if circles are misidentified in more than 2 % of the windows with a board.
 #include "core/frontend/board_tracker.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/geometry/camera_model.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"

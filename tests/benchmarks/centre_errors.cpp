@@ -6,7 +6,7 @@
 // The batch estimates delay and lead, but takes q and g for motion. An acceleration error of a sinusoid
 // scales its amplitude by q w^2, so that q and g describe the same fault: each is fitted without the other.
 #include "core/base/option_table.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/frontend/board_tracker.h"
 #include "core/synthetic/event_simulator.h"
 #include "tests/benchmarks/benchmark_program.h"

@@ -2,7 +2,7 @@
 // [--recording FOLDER] [--scratch FOLDER] [SCENARIO...] [--durations S...]`. A scenario is simulated once
 // into a file, for the longest duration, and its first seconds are calibrated in a separate process each
 // time. With several durations, the growth exponent is printed.
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/simulate/simulation.h"
 #include "core/report/result_yaml.h"

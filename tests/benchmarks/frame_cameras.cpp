@@ -1,7 +1,7 @@
 // Accuracy of frame cameras, further boards and lenses, as one table: `evical_benchmarks frame_cameras
 // [--only NAME...] [--seconds S]`. Simulated recordings are compared with their truth; real ones, in the
 // folder EVICAL_DATA, with published values. Fails if a target is missed.
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/frames/gray_image.h"
 #include "core/geometry/projection_difference.h"
 #include "core/geometry/so3.h"

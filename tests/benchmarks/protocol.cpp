@@ -4,7 +4,7 @@
 // (scenarios without given intrinsics) as by `evical intrinsics`. Recordings are simulated one by one and
 // then removed. Fails if one cannot be calibrated, or if results disagree.
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/data/intrinsics_result.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"

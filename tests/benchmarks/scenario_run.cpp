@@ -1,9 +1,9 @@
 #include "tests/benchmarks/scenario_run.h"
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/frontend/board_tracker.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/geometry/camera_model.h"
 #include "core/numerics/angles.h"
 #include "core/pipeline/pass/camera_views.h"

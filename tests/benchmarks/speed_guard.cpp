@@ -10,7 +10,7 @@
 #include "core/base/yaml_node.h"
 #include "core/frontend/board_search.h"
 #include "core/frontend/board_tracker.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/initialise.h"
 #include "core/intrinsics/estimate_intrinsics.h"

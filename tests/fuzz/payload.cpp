@@ -2,7 +2,7 @@
 // event_camera_msgs payloads, chunks of Metavision's ECF, packets of AEDAT4, CDR messages, headers of images.
 #include "core/format/picture_header.h"
 #include "core/recording/aedat/packets.h"
-#include "core/recording/hdf5/ecf_decoder.h"
+#include "core/recording/hdf5/hdf5_filters.h"
 #include "core/recording/ros/event_packet_decoder.h"
 #include "core/recording/ros/image_messages.h"
 #include "core/recording/ros/ros_messages.h"

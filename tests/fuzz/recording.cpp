@@ -5,7 +5,6 @@
 #include "core/base/time.h"
 #include "core/recording/hdf5/hdf5_reader.h"
 #include "core/recording/inspection.h"
-#include "core/recording/inspection_json.h"
 #include "core/recording/recording_reader.h"
 #include "tests/fuzz/input_file.h"
 

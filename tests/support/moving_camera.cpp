@@ -1,9 +1,9 @@
 #include "tests/support/moving_camera.h"
 
 #include "core/base/time.h"
-#include "core/egomotion/edge_row.h"
+#include "core/egomotion/camera_record.h"
 #include "core/egomotion/egomotion_options.h"
-#include "core/egomotion/window_motion.h"
+#include "core/egomotion/window_fit.h"
 #include "tests/support/random_vector.h"
 
 #include <cmath>

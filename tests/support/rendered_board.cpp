@@ -1,8 +1,8 @@
 #include "tests/support/rendered_board.h"
 
 #include "core/geometry/camera_model.h"
-#include "core/geometry/charuco_layout.h"
 #include "core/geometry/circle_conic.h"
+#include "core/geometry/marker_bits.h"
 #include "core/geometry/so3.h"
 #include "tests/support/aruco_library.h"
 

@@ -1,7 +1,7 @@
 #include "tests/support/scenario_session.h"
 
 #include "core/frontend/board_tracker.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/imu_simulator.h"

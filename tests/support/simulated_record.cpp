@@ -1,7 +1,7 @@
 #include "tests/support/simulated_record.h"
 
-#include "core/frontend/front_end_options.h"
-#include "core/pipeline/check/boardless_pass.h"
+#include "core/frontend/detection_options.h"
+#include "core/pipeline/check/check_without_board.h"
 #include "core/synthetic/event_simulator.h"
 #include "tests/support/processor_time.h"
 

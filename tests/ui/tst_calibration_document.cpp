@@ -2,7 +2,7 @@
 #include "ui/document/calibration_document.h"
 
 #include "core/base/error.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 

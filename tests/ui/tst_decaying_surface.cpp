@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "ui/detection/decaying_surface.h"
+#include "ui/detection/surface_frame.h"
 
 #include "core/base/time.h"
 #include "tests/support/test_program.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/base/time.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/other_load.h"
 #include "tests/ui/recorded_windows.h"

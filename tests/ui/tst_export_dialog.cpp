@@ -6,7 +6,7 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/screenshots.h"
 #include "tests/ui/window_fixture.h"
-#include "ui/window/export_notice.h"
+#include "ui/window/error_panel.h"
 
 #include <QCheckBox>
 #include <QDesktopServices>

@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "tests/support/test_program.h"
-#include "ui/jobs/mailbox.h"
+#include "ui/jobs/live_view.h"
 
 #include <QSignalSpy>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The complete workflow, by mouse and keyboard: open, calibrate, cancel, calibrate again, change, export,
 // reopen.
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "ui/window/main_window.h"
 
 #include "tests/support/test_program.h"
@@ -18,7 +18,6 @@
 #include "ui/screens/recording/stream_table.h"
 #include "ui/screens/result/result_screen.h"
 #include "ui/window/error_panel.h"
-#include "ui/window/export_notice.h"
 #include "ui/window/log_panel.h"
 #include "ui/window/session_files.h"
 #include "ui/window/steps_panel.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list of windows in the main window: rejections apply to the next run and can be undone; a residual
 // leads to its window.
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"

@@ -15,7 +15,6 @@
 #include "ui/screens/assessment/finding_table.h"
 #include "ui/screens/assessment/maintain_screen.h"
 #include "ui/window/error_panel.h"
-#include "ui/window/export_notice.h"
 #include "ui/window/session_files.h"
 
 #include <QComboBox>

@@ -2,7 +2,7 @@
 #include "ui/forms/option_form.h"
 
 #include "core/base/error.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/calibration_options.h"
 #include "tests/support/test_program.h"

@@ -5,7 +5,7 @@
 #include "tests/support/test_program.h"
 #include "tests/ui/simulated_session.h"
 #include "tests/ui/window_fixture.h"
-#include "ui/forms/decimal_box.h"
+#include "ui/forms/number_field.h"
 #include "ui/theme/plain_labels.h"
 #include "ui/window/print_board.h"
 #include "ui/window/session_files.h"

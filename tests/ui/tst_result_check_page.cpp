@@ -9,10 +9,9 @@
 #include "tests/ui/unnamed_controls.h"
 #include "tests/ui/window_fixture.h"
 #include "ui/screens/assessment/finding_table.h"
-#include "ui/screens/assessment/old_result_row.h"
+#include "ui/screens/assessment/path_row.h"
 #include "ui/screens/assessment/result_check_screen.h"
 #include "ui/window/error_panel.h"
-#include "ui/window/export_notice.h"
 #include "ui/window/session_files.h"
 
 #include <QGridLayout>

@@ -19,7 +19,6 @@
 #include "ui/screens/recording/stream_table.h"
 #include "ui/screens/result/result_screen.h"
 #include "ui/window/error_panel.h"
-#include "ui/window/export_notice.h"
 #include "ui/window/session_files.h"
 
 #include <QCheckBox>

@@ -2,7 +2,7 @@
 #include "ui/detection/detection_engine.h"
 
 #include "core/base/error.h"
-#include "core/base/modest_thread.h"
+#include "core/base/in_parallel.h"
 #include "core/base/time.h"
 #include "ui/detection/burst_band.h"
 #include "ui/detection/trajectory_pose.h"

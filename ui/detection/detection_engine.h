@@ -5,7 +5,6 @@
 #pragma once
 
 #include "core/pipeline/session/session.h"
-#include "ui/detection/decaying_surface.h"
 #include "ui/detection/event_window_reader.h"
 #include "ui/detection/events_over_frame.h"
 #include "ui/detection/frame_analysis.h"
@@ -14,7 +13,7 @@
 #include "ui/detection/window_analysis.h"
 #include "ui/detection/window_pictures.h"
 #include "ui/jobs/latest_job.h"
-#include "ui/jobs/mailbox.h"
+#include "ui/jobs/live_view.h"
 
 #include <QObject>
 

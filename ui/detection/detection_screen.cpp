@@ -3,14 +3,14 @@
 
 #include "core/base/file_places.h"
 #include "core/frames/frame_options.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "ui/detection/detection_engine.h"
 #include "ui/detection/event_view.h"
 #include "ui/detection/second_camera.h"
 #include "ui/detection/timeline.h"
 #include "ui/detection/window_list.h"
+#include "ui/detection/window_list_model.h"
 #include "ui/detection/window_panel.h"
-#include "ui/detection/window_rows.h"
 #include "ui/forms/page_keys.h"
 #include "ui/theme/theme.h"
 

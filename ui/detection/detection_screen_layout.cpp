@@ -5,7 +5,7 @@
 #include "ui/detection/timeline.h"
 #include "ui/detection/window_list.h"
 #include "ui/detection/window_panel.h"
-#include "ui/forms/decimal_box.h"
+#include "ui/forms/number_field.h"
 #include "ui/theme/steady_label.h"
 #include "ui/theme/theme.h"
 

@@ -6,19 +6,41 @@
 // one with the same sensor, else the first.
 #pragma once
 
-#include "core/data/board_observations.h"
-#include "core/pipeline/session/session.h"
 #include "ui/detection/event_cache.h"
 #include "ui/detection/frame_cache.h"
-#include "ui/detection/rate_curve.h"
-#include "ui/jobs/mailbox.h"
 
+#include "core/data/board_observations.h"
+#include "core/pipeline/session/session.h"
+#include "ui/jobs/live_view.h"
+
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
+
+// A quantity over time in bins of the same length.
+
+namespace evical::ui {
+
+struct RateCurve {
+  double begin_s = 0.0, step_s = 0.01;
+  std::vector<float> values;  // NaN if unknown
+
+  double end_s() const { return begin_s + step_s * static_cast<double>(values.size()); }
+  // Index of the bin that contains a time; values.size() if none does.
+  std::size_t binAt(double time_s) const {
+    const double bin = std::floor((time_s - begin_s) / step_s);
+    return bin >= 0.0 && bin < static_cast<double>(values.size()) ? static_cast<std::size_t>(bin)
+                                                                  : values.size();
+  }
+};
+
+}  // namespace evical::ui
 
 namespace evical::ui {
 

@@ -2,7 +2,6 @@
 #include "ui/detection/frame_analysis.h"
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/frames/frame_tracker.h"
 #include "core/frames/views_from_frames.h"

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "core/data/calibration_observer.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/pipeline/pass/recording_pass.h"
-#include "ui/jobs/mailbox.h"
+#include "ui/jobs/live_view.h"
 
 #include <QObject>
 

@@ -2,7 +2,7 @@
 #include "ui/detection/second_camera.h"
 
 #include "core/frames/frame_options.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "ui/detection/event_view.h"
 
 #include <QPainter>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "core/data/board_observations.h"
-#include "ui/detection/rate_curve.h"
+#include "ui/detection/event_window_reader.h"
 
 #include <QBrush>
 #include <QColor>

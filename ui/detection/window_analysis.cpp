@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/detection/window_analysis.h"
 
-#include "core/base/stopwatch.h"
 #include "core/base/time.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "ui/detection/window_pictures.h"
 
 #include "core/base/error.h"
-#include "core/base/modest_thread.h"
+#include "core/base/in_parallel.h"
 #include "core/base/time.h"
 #include "core/frames/gray_image.h"
 #include "ui/detection/frame_analysis.h"

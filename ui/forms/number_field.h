@@ -3,7 +3,9 @@
 // value, with a mark that gives the reason.
 #pragma once
 
+#include <QDoubleSpinBox>
 #include <QLineEdit>
+#include <QLocale>
 
 #include <optional>
 
@@ -41,6 +43,26 @@ class NumberField : public QLineEdit {
 
   double minimum_, maximum_, value_ = 0.0;
   QAction* refused_;  // mark of refused input
+};
+
+}  // namespace evical::ui
+
+// Spin box with a decimal point in every country: all other numbers of the window have one.
+
+namespace evical::ui {
+
+class DecimalBox final : public QDoubleSpinBox {
+ public:
+  explicit DecimalBox(QWidget* parent = nullptr) : QDoubleSpinBox(parent) { setLocale(QLocale::c()); }
+
+ protected:
+  // A typed comma becomes a point at once. A pasted "1,300" is refused.
+  QValidator::State validate(QString& text, int& position) const override {
+    QString number = text;
+    if (hasAmbiguousComma(number.remove(suffix()))) return QValidator::Invalid;
+    text.replace(',', '.');
+    return QDoubleSpinBox::validate(text, position);
+  }
 };
 
 }  // namespace evical::ui

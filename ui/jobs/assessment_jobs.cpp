@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/jobs/assessment_jobs.h"
 
-#include "core/data/calibration_stage.h"
+#include "core/data/calibration_observer.h"
 #include "core/pipeline/repeat/repeat_files.h"
 #include "core/pipeline/rig/prefixed_progress.h"
 

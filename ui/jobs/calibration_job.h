@@ -2,7 +2,7 @@
 // A calibration as a job that shows intermediate results of the front end and the optimiser.
 #pragma once
 
-#include "core/data/calibration_stage.h"
+#include "core/data/calibration_observer.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "ui/jobs/job_runner.h"
 #include "ui/jobs/live_view.h"

@@ -2,10 +2,10 @@
 #include "ui/jobs/job_runner.h"
 
 #include "core/base/error.h"
-#include "core/base/modest_thread.h"
+#include "core/base/in_parallel.h"
 #include "core/base/plain_text.h"
 #include "core/base/process_memory.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/recording/separate_reader.h"
 
 #include <QMetaObject>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/jobs/recording_check_job.h"
 
-#include "core/base/modest_thread.h"
-#include "core/data/calibration_stage.h"
+#include "core/base/in_parallel.h"
+#include "core/data/calibration_observer.h"
 
 #include <utility>
 

@@ -2,7 +2,7 @@
 #include "ui/jobs/run_history.h"
 
 #include "core/base/error.h"
-#include "core/base/modest_thread.h"
+#include "core/base/in_parallel.h"
 
 #include <QCryptographicHash>
 #include <QDateTime>

@@ -3,7 +3,7 @@
 // and the residuals of gravity's norm at stops.
 #pragma once
 
-#include "core/data/maintenance.h"
+#include "core/data/assessment.h"
 
 #include <QWidget>
 

@@ -3,7 +3,7 @@
 
 #include "core/numerics/robust.h"
 #include "core/report/residual_statistics.h"
-#include "ui/forms/decimal_box.h"
+#include "ui/forms/number_field.h"
 #include "ui/jobs/latest_job.h"
 #include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"

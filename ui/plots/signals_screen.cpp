@@ -8,7 +8,6 @@
 #include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"
 #include "ui/plots/plot_panel.h"
-#include "ui/plots/signal_lines.h"
 #include "ui/plots/signal_tab.h"
 
 #include <QComboBox>

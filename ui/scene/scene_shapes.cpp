@@ -1,16 +1,47 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/scene_shapes.h"
 
+#include "ui/scene/trajectory_scene.h"
+
 #include "core/base/error.h"
+#include "core/geometry/camera_model.h"
 #include "core/printing/board_squares.h"
 
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
-
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
+
+namespace evical::ui {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+Vector3d rayAtUnitDepth(const CameraIntrinsics& camera, const Vector2d& pixel) {
+  const Vector2d straight = (pixel - camera.principal_point_px).cwiseQuotient(camera.focal_length_px);
+  const auto ray = unprojectRay(camera, pixel);
+  if (!ray) return {straight.x(), straight.y(), 1.0};
+  constexpr double kWidest = 3.0;  // largest x/z that is drawn: wider lenses are clipped to it
+  const double length = ray->head<2>().norm(), reach = ray->z() > 0.0 ? length / ray->z() : kWidest;
+  const Vector2d shown = ray->head<2>() * (std::min(reach, kWidest) / std::max(length, 1e-12));
+  return {shown.x(), shown.y(), 1.0};
+}
+
+CameraShape cameraShape(const std::optional<CameraIntrinsics>& intrinsics) {
+  CameraIntrinsics camera{CameraModel::PinholeRadtan, {640, 480}, {550.0, 550.0}, {319.5, 239.5}, {}};
+  if (intrinsics && intrinsics->resolution_px.known()) camera = *intrinsics;
+  const double right = camera.resolution_px.width_px - 0.5, bottom = camera.resolution_px.height_px - 0.5;
+  CameraShape shape;
+  shape.corners = {rayAtUnitDepth(camera, {-0.5, -0.5}), rayAtUnitDepth(camera, {right, -0.5}),
+                   rayAtUnitDepth(camera, {right, bottom}), rayAtUnitDepth(camera, {-0.5, bottom})};
+  shape.vertical_view_rad = 2.0 * std::atan(0.5 * (shape.corners[2].y() - shape.corners[0].y()));
+  return shape;
+}
+
+}  // namespace evical::ui
 
 namespace evical::ui {
 namespace {
@@ -189,6 +220,27 @@ void addGrid(ShapeBuilder& shapes, const Vector3d& centre_m, const Vector3d& up,
     shapes.line(on_first - half_m * second, on_first + half_m * second);
     shapes.line(on_second - half_m * first, on_second + half_m * first);
   }
+}
+
+}  // namespace evical::ui
+
+namespace evical::ui {
+
+void addSampleScene(vtkRenderer* renderer) {
+  const RigidTransform pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, -0.5}};
+  auto track = std::make_shared<TrajectoryTrack>();
+  for (const double time_s : {0.0, 1.0, 2.0}) {
+    track->times_s.push_back(time_s);
+    track->positions_m.emplace_back(0.1 * time_s, 0.0, -0.5);
+    track->speeds_m_s.push_back(time_s);
+  }
+  track->stations.push_back({0.0, {pose}});
+  TrajectoryScene scene(renderer);  // its additions stay with the renderer
+  scene.setBoard(Board{});
+  scene.setTrack(track);
+  scene.setGravity(Eigen::Vector3d(0.0, 9.81, 0.0));
+  scene.setRawPoses({pose});
+  scene.setInstant({pose}, {pose});
 }
 
 }  // namespace evical::ui

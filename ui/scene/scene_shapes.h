@@ -3,19 +3,48 @@
 #pragma once
 
 #include "core/geometry/board.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/rigid_transform.h"
-#include "ui/scene/camera_shape.h"
-#include "ui/scene/placed_board.h"
 
 #include <vtkCellArray.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkUnsignedCharArray.h>
-
+#include <Eigen/Core>
 #include <QColor>
 
 #include <array>
+#include <optional>
 #include <span>
+
+// A board with its pose.
+
+namespace evical::ui {
+
+struct PlacedBoard {
+  Board board;
+  RigidTransform world_from_board = {};
+};
+
+}  // namespace evical::ui
+
+// Field of view of a camera as a pyramid.
+
+namespace evical::ui {
+
+// Corners of the image in the camera frame at z = 1, in order around it.
+struct CameraShape {
+  std::array<Eigen::Vector3d, 4> corners;
+  double vertical_view_rad = 0.0;
+};
+
+// Point of a pixel's ray at z = 1; for wide-angle lenses clipped to what can be drawn.
+Eigen::Vector3d rayAtUnitDepth(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
+
+// Without intrinsics: a typical camera.
+CameraShape cameraShape(const std::optional<CameraIntrinsics>& intrinsics);
+
+}  // namespace evical::ui
 
 class vtkPolyData;
 
@@ -64,5 +93,15 @@ void addArrow(ShapeBuilder& shapes, const Eigen::Vector3d& from, const Eigen::Ve
 // there.
 void addGrid(ShapeBuilder& shapes, const Eigen::Vector3d& centre_m, const Eigen::Vector3d& up,
              const Eigen::Vector3d& along, double spacing_m, int half_count);
+
+}  // namespace evical::ui
+
+// Contains every kind of object of the trajectory's scene: drawing it once compiles all shaders.
+
+class vtkRenderer;
+
+namespace evical::ui {
+
+void addSampleScene(vtkRenderer* renderer);
 
 }  // namespace evical::ui

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/trajectory_scene.h"
 
-#include "ui/scene/camera_shape.h"
 #include "ui/scene/scene_shapes.h"
 #include "ui/scene/trajectory_track.h"
 #include "ui/theme/theme.h"

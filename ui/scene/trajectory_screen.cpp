@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/scene/trajectory_screen.h"
 
-#include "core/base/modest_thread.h"
+#include "core/base/in_parallel.h"
 #include "ui/forms/page_keys.h"
 #include "ui/jobs/file_saver.h"
 #include "ui/jobs/latest_job.h"
-#include "ui/scene/camera_shape.h"
 #include "ui/scene/pose_readout.h"
-#include "ui/scene/sample_scene.h"
+#include "ui/scene/scene_shapes.h"
 #include "ui/scene/time_bar.h"
 #include "ui/scene/trajectory_overlay.h"
 #include "ui/scene/trajectory_tools.h"

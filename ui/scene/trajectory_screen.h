@@ -7,8 +7,8 @@
 #include "core/data/calibration_state.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "ui/jobs/live_view.h"
-#include "ui/scene/frustum_events.h"
 #include "ui/scene/trajectory_scene.h"
+#include "ui/scene/trajectory_track.h"
 
 #include <QWidget>
 

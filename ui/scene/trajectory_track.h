@@ -3,10 +3,13 @@
 #pragma once
 
 #include "core/data/calibration_result.h"
+#include "core/data/event.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/trajectory.h"
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,5 +56,32 @@ std::optional<RigInstant> rigAt(const CalibrationState& state, double camera_tim
 // Smallest number of 1, 2 or 5 times a power of ten that is at least `value`; for intervals, scales and
 // grids.
 double roundedUp(double value);
+
+}  // namespace evical::ui
+
+// Events around the cursor's time on the image plane of the camera's frustum.
+
+namespace evical::ui {
+
+// Access to a camera's events by time, usable in another thread.
+struct EventLookup {
+  std::size_t camera = 0;
+  std::function<std::vector<Event>(double begin_s, double end_s)> between = {};  // none: no events
+};
+
+struct FrustumEvent {
+  Eigen::Vector3d at;  // in the camera frame, at z = 1
+  bool brighter = false;
+};
+
+struct FrustumEvents {
+  std::size_t camera = 0;
+  std::vector<FrustumEvent> events;
+};
+
+// The newest event of each pixel; thinned out if there are very many, to keep the frame rate. Empty without a
+// lens.
+std::vector<FrustumEvent> onImagePlane(const std::vector<Event>& events,
+                                       const std::optional<CameraIntrinsics>& intrinsics);
 
 }  // namespace evical::ui

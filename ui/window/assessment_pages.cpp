@@ -9,7 +9,7 @@
 #include "ui/plots/maintenance_charts.h"
 #include "ui/screens/assessment/file_list.h"
 #include "ui/screens/assessment/maintain_screen.h"
-#include "ui/screens/assessment/old_result_row.h"
+#include "ui/screens/assessment/path_row.h"
 #include "ui/screens/assessment/repeat_screen.h"
 #include "ui/screens/assessment/result_check_screen.h"
 #include "ui/screens/assessment/work_bar.h"

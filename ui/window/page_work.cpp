@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/page_work.h"
 
-#include "core/base/new_folder.h"
-#include "core/data/calibration_stage.h"
+#include "core/base/file_places.h"
+#include "core/data/calibration_observer.h"
 #include "core/pipeline/maintain/maintain_imus.h"
 #include "ui/screens/assessment/work_bar.h"
 #include "ui/window/session_files.h"

@@ -3,7 +3,7 @@
 
 #include "ui/screens/assessment/file_list.h"
 #include "ui/screens/assessment/maintain_screen.h"
-#include "ui/screens/assessment/old_result_row.h"
+#include "ui/screens/assessment/path_row.h"
 #include "ui/screens/assessment/repeat_screen.h"
 #include "ui/screens/assessment/result_check_screen.h"
 #include "ui/window/main_window.h"

@@ -2,7 +2,7 @@
 #include "ui/window/session_files.h"
 
 #include "core/base/error.h"
-#include "core/base/new_folder.h"
+#include "core/base/file_places.h"
 #include "core/export/export_target.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/saved_run.h"

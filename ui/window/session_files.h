@@ -3,8 +3,8 @@
 // recent files.
 #pragma once
 
+#include "ui/window/error_panel.h"
 #include "ui/window/export_dialog.h"
-#include "ui/window/export_notice.h"
 #include "ui/window/workbench.h"
 
 #include <QObject>

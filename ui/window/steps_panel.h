@@ -2,7 +2,7 @@
 // Steps of a calibration in order, each with its state, progress, duration and key number.
 #pragma once
 
-#include "core/data/calibration_stage.h"
+#include "core/data/calibration_observer.h"
 #include "ui/document/calibration_aim.h"
 #include "ui/jobs/calibration_job.h"
 #include "ui/jobs/intrinsics_job.h"
@@ -29,7 +29,7 @@ class StepsPanel : public QWidget {
 
   void reset();
   void setAim(CalibrationAim aim);        // whose steps are shown; they remain after a run
-  void startStage(const QString& stage);  // by name (core/data/calibration_stage.h)
+  void startStage(const QString& stage);  // by name (core/data/calibration_observer.h)
   void setProgress(const JobProgress& progress);
   void setDetections(const LiveDetections& detections);
   void addInitialisationNote(const InitialisationNote& note);

@@ -13,8 +13,12 @@
 #include "ui/jobs/recording_check_job.h"
 #include "ui/jobs/run_history.h"
 
+#include <QObject>
 #include <QString>
+#include <QTimer>
 
+#include <chrono>
+#include <functional>
 #include <optional>
 
 namespace evical::ui {
@@ -45,5 +49,19 @@ struct Workbench {
     return std::nullopt;
   }
 };
+
+}  // namespace evical::ui
+
+// Splits long work over several turns of the event loop, so that no single turn is noticeably long.
+
+namespace evical::ui {
+
+// Calls `act` after the given number of turns of the event loop; each turn handles the pending events,
+// layouts and paintings.
+inline void afterTurns(int turns, QObject* context, const std::function<void()>& act) {
+  if (turns <= 0) return act();
+  constexpr auto kNext = std::chrono::milliseconds(1);
+  QTimer::singleShot(kNext, context, [turns, context, act] { afterTurns(turns - 1, context, act); });
+}
 
 }  // namespace evical::ui

@@ -1,7 +1,7 @@
 #include "core/optimisation/uncertainty/change_test.h"
 
 #include "core/numerics/angles.h"
-#include "core/numerics/scaled_inverse.h"
+#include "core/numerics/dense.h"
 #include "core/optimisation/uncertainty/score_scatter.h"
 
 #include <fmt/format.h>

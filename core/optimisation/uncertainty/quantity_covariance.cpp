@@ -2,7 +2,6 @@
 
 #include "core/data/pixel_delay.h"
 #include "core/numerics/dense.h"
-#include "core/numerics/scaled_inverse.h"
 #include "core/optimisation/uncertainty/projected_information.h"
 #include "core/optimisation/uncertainty/score_scatter.h"
 

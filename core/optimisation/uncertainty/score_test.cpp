@@ -1,11 +1,11 @@
 #include "core/optimisation/uncertainty/score_test.h"
 
 #include "core/data/board_bow.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/camera_model.h"
-#include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
-#include "core/numerics/scaled_inverse.h"
+#include "core/numerics/dense.h"
 #include "core/optimisation/uncertainty/noise_corrected_information.h"
 #include "core/optimisation/uncertainty/schur_columns.h"
 #include "core/optimisation/uncertainty/score_scatter.h"

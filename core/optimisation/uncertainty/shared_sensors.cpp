@@ -1,11 +1,11 @@
 #include "core/optimisation/uncertainty/shared_sensors.h"
 
 #include "core/data/quantity.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/projection_difference.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
-#include "core/numerics/scaled_inverse.h"
+#include "core/numerics/dense.h"
 #include "core/optimisation/uncertainty/noise_corrected_information.h"
 #include "core/optimisation/uncertainty/projected_information.h"
 #include "core/optimisation/uncertainty/schur_columns.h"

@@ -4,7 +4,6 @@
 #include "core/base/child_process.h"
 #include "core/base/file_lock.h"
 #include "core/pipeline/batch/batch_jobs.h"
-#include "core/pipeline/batch/batch_outcome.h"
 
 #include <filesystem>
 #include <span>

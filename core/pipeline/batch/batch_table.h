@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/pipeline/batch/batch_jobs.h"
-#include "core/pipeline/batch/batch_outcome.h"
 #include "core/report/result_yaml.h"
 
 #include <filesystem>

@@ -8,7 +8,7 @@
 #include "core/pipeline/rig/prefixed_progress.h"
 #include "core/pipeline/rig/recording_assessment.h"
 #include "core/pipeline/runs/result_files.h"
-#include "core/pipeline/session/check_options.h"
+#include "core/pipeline/session/calibration_options.h"
 #include "core/report/report_options.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/base/progress.h"
-#include "core/data/calibration_check.h"
+#include "core/data/assessment.h"
 #include "core/pipeline/check/check_session.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 

@@ -7,7 +7,7 @@
 #include "core/data/quantity.h"
 #include "core/pipeline/compare/compared_quantities.h"
 #include "core/pipeline/runs/saved_run.h"
-#include "core/pipeline/session/check_options.h"
+#include "core/pipeline/session/calibration_options.h"
 #include "core/pipeline/session/session_keys.h"
 #include "core/pipeline/session/session_of_recording.h"
 

@@ -1,9 +1,9 @@
 // Verdict on an old calibration from both results: a test of each quantity, and one sentence for all.
 #pragma once
 
-#include "core/data/calibration_check.h"
+#include "core/data/assessment.h"
 #include "core/pipeline/compare/compared_quantities.h"
-#include "core/pipeline/session/check_options.h"
+#include "core/pipeline/session/calibration_options.h"
 
 #include <string>
 

@@ -4,7 +4,7 @@
 #include "core/data/assessment.h"
 #include "core/data/quantity.h"
 #include "core/pipeline/compare/outlier_group_test.h"
-#include "core/pipeline/session/check_options.h"
+#include "core/pipeline/session/calibration_options.h"
 #include "core/report/result_yaml.h"
 
 #include <Eigen/Core>

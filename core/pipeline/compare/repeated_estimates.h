@@ -2,7 +2,7 @@
 // board belong to the rig; biases, gravity and time offsets to each recording (docs/maths.md, 14).
 #pragma once
 
-#include "core/data/repeatability.h"
+#include "core/data/assessment.h"
 #include "core/pipeline/compare/combined_estimates.h"
 #include "core/pipeline/compare/rig_quantities.h"
 #include "core/report/result_yaml.h"

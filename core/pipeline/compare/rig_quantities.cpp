@@ -1,12 +1,12 @@
 #include "core/pipeline/compare/rig_quantities.h"
 
 #include "core/data/board_bow.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
-#include "core/optimisation/lens_prior.h"
+#include "core/optimisation/free_intrinsics.h"
 #include "core/optimisation/optimisation_options.h"
-#include "core/optimisation/weak_priors.h"
+#include "core/optimisation/prior_residuals.h"
 #include "core/pipeline/compare/compared_quantities.h"
 
 #include <utility>

@@ -4,7 +4,7 @@
 
 #include "core/data/calibration_result.h"
 #include "core/data/quantity.h"
-#include "core/pipeline/session/check_options.h"
+#include "core/pipeline/session/calibration_options.h"
 #include "core/pipeline/session/session.h"
 
 #include <Eigen/Core>

@@ -2,7 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/frontend/board_tracker.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/intrinsics/estimate_intrinsics.h"
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/pipeline/pass/session_recording.h"

@@ -1,17 +1,15 @@
 #include "core/pipeline/lens/intrinsics_calibration.h"
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
-#include "core/data/calibration_stage.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/pipeline/lens/intrinsics_bootstrap.h"
-#include "core/pipeline/pass/blink_views.h"
 #include "core/pipeline/pass/board_size_check.h"
+#include "core/pipeline/pass/camera_views.h"
 #include "core/pipeline/pass/session_recording.h"
 
 #include <fmt/format.h>

@@ -4,7 +4,6 @@
 
 #include "core/base/progress.h"
 #include "core/data/intrinsics_result.h"
-#include "core/data/intrinsics_story.h"
 #include "core/pipeline/pass/recording_pass.h"
 #include "core/pipeline/session/session.h"
 

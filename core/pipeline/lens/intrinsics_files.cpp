@@ -1,7 +1,7 @@
 #include "core/pipeline/lens/intrinsics_files.h"
 
+#include "core/export/export_text.h"
 #include "core/export/kalibr_text.h"
-#include "core/export/ros_camera.h"
 #include "core/pipeline/pass/session_recording.h"
 #include "core/report/detections_csv.h"
 

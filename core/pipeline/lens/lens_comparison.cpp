@@ -1,7 +1,7 @@
 #include "core/pipeline/lens/lens_comparison.h"
 
 #include "core/base/error.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/intrinsics_uncertainty.h"
 

@@ -1,7 +1,7 @@
 // If all IMUs change relative to one of them at the same time, that one has changed.
 #pragma once
 
-#include "core/data/maintenance.h"
+#include "core/data/assessment.h"
 
 namespace evical {
 

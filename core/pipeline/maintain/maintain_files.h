@@ -2,7 +2,7 @@
 // tables, log.txt. They are written together or not at all.
 #pragma once
 
-#include "core/data/maintenance.h"
+#include "core/data/assessment.h"
 
 #include <filesystem>
 #include <string>

@@ -4,7 +4,6 @@
 #include "core/base/how_to.h"
 #include "core/base/number.h"
 #include "core/base/process_memory.h"
-#include "core/base/stopwatch.h"
 #include "core/base/time.h"
 #include "core/geometry/so3.h"
 #include "core/maintenance/clock_agreement.h"

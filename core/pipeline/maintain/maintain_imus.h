@@ -1,9 +1,9 @@
 // Check of IMUs against an old calibration, with times of changes, in one pass over logs of any length.
 #pragma once
 
+#include "core/base/option_table.h"
 #include "core/base/progress.h"
-#include "core/base/shared_options.h"
-#include "core/data/maintenance.h"
+#include "core/data/assessment.h"
 #include "core/pipeline/maintain/imu_logs.h"
 #include "core/report/result_yaml.h"
 

@@ -2,7 +2,7 @@
 // them.
 #pragma once
 
-#include "core/data/maintenance.h"
+#include "core/data/assessment.h"
 #include "core/maintenance/pair_tracking.h"
 #include "core/maintenance/stop_calibration.h"
 #include "core/maintenance/trajectory_segment.h"

@@ -6,12 +6,17 @@
 #include "core/base/progress.h"
 #include "core/data/board_observations.h"
 #include "core/data/camera_lens.h"
-#include "core/data/recording_fault.h"
+#include "core/data/event.h"
+#include "core/data/frame.h"
+#include "core/data/recording.h"
+#include "core/frames/blink_tracker.h"
 #include "core/frames/frame_tracker.h"
 #include "core/frames/views_from_frames.h"
-#include "core/pipeline/pass/camera_batch.h"
+#include "core/frontend/edge_crossings.h"
+#include "core/geometry/resolution.h"
 #include "core/pipeline/session/session.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -19,6 +24,21 @@
 #include <vector>
 
 namespace evical {
+
+// Data of one camera that the reading thread passes to the window thread.
+
+struct CameraBatch {
+  std::size_t camera = 0;
+  std::vector<EdgeCrossing> bursts;
+  std::int64_t first_event_ns = 0, complete_until_ns = 0;
+  std::vector<Event> events;  // for a blinking board, instead of bursts
+  std::vector<Frame> frames;
+  std::vector<MeasuredPoint> points;  // with the same timestamp
+  // Set in a camera's first batch.
+  std::optional<Resolution> opened_px;
+  CameraKind kind = CameraKind::Events;
+  std::int64_t start_ns = 0;
+};
 
 class CameraViews {
  public:
@@ -95,5 +115,30 @@ class PointViews final : public CameraViews {
   std::uint64_t seen_ = 0, unknown_ = 0, outside_ = 0, twice_ = 0;
   int largest_ = 0;  // largest index that the board does not have
 };
+
+// Views of a blinking board from events.
+
+class BlinkViews final : public CameraViews {
+ public:
+  BlinkViews(const CameraBatch& first, const ViewRequest& request);
+
+  void consume(const CameraBatch& batch) override { tracker_.add(batch.events); }
+  const BoardObservations& soFar() const override { return tracker_.soFar(); }
+  // Throws CalibrationFailed if nothing blinks.
+  BoardObservations finish(std::vector<RecordingFault>& faults) override;
+
+ private:
+  const SessionCamera& camera_;
+  const RunContext& context_;
+  std::optional<CameraIntrinsics> lens_;
+  BlinkTracker tracker_;
+};
+
+// Error if the board was not found but something blinks; absent if nothing blinks, or if the session's board
+// blinks. Reads the first seconds of the recording again.
+std::optional<CalibrationError> unexpectedBlink(const Session& session, std::size_t camera);
+
+// Throws CalibrationFailed if something blinks, but the board was never found in it.
+void checkBlinkingBoardSeen(const BoardObservations& observations, const Board& board);
 
 }  // namespace evical

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "core/data/event.h"
-#include "core/data/recording_fault.h"
+#include "core/data/recording.h"
 #include "core/frontend/edge_crossings.h"
-#include "core/pipeline/pass/camera_batch.h"
+#include "core/pipeline/pass/camera_views.h"
 #include "core/pipeline/session/session.h"
 #include "core/recording/read_out_load.h"
-#include "core/recording/stamp_step.h"
+#include "core/recording/stray_stamps.h"
 
 #include <cstdint>
 #include <limits>

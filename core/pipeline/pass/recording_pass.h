@@ -5,6 +5,7 @@
 #include "core/data/board_observations.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/recording.h"
+#include "core/initialisation/mirror_check.h"
 #include "core/pipeline/session/session.h"
 
 #include <cstdint>
@@ -40,5 +41,17 @@ DetectionResult readAndDetect(const Session& session, std::vector<CameraLens> le
 
 // Reads only the IMUs of a recording with a known start; data of cameras are not read.
 DetectionResult readImus(const Session& session, std::int64_t start_ns, const RunContext& context);
+
+// Input of initialisation and batch from a pass.
+
+// Combines the data with the session's sensors. Moves the data of cameras and IMUs out of the pass: in long
+// recordings they are most of the memory.
+CalibrationInput makeInput(const Session& session, DetectionResult& pass);
+
+// Statements of the session about mirrored images and signs of accelerations.
+StatedSigns statedSigns(const Session& session);
+
+// Moves the data back; an empty input has no effect.
+void restorePass(CalibrationInput input, DetectionResult& pass);
 
 }  // namespace evical

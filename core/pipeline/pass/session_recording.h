@@ -2,6 +2,8 @@
 #pragma once
 
 #include "core/pipeline/pass/merged_streams.h"
+
+#include "core/pipeline/session/session.h"
 #include "core/recording/separate_imu.h"
 
 #include <cstddef>
@@ -80,6 +82,30 @@ class SessionRecording {
   std::vector<std::pair<std::size_t, std::size_t>>
       places_;  // by sensor: indices of the file, and of the stream in the file
   std::int64_t start_ns_ = 0;
+};
+
+// Time range of a session, and the decision when the rest of a recording need not be read.
+
+class SessionTimeRange {
+ public:
+  // `sensors`: number of sensors.
+  SessionTimeRange(const Session& session, std::size_t sensors, std::int64_t start_ns)
+      : session_(session), start_ns_(start_ns), latest_ns_(start_ns), behind_(sensors) {}
+
+  // True for all times if the session has no time range.
+  bool holds(std::int64_t time_ns) const;
+
+  // True after all sensors are well beyond the range: a wrong timestamp is followed by correct ones. Must be
+  // called with all packets in order.
+  bool isOver(const SensorPacket& packet);
+
+  // Throws CalibrationError (BadInput) if all data are before the range. Call it at the end.
+  void checkBegin() const;
+
+ private:
+  const Session& session_;
+  std::int64_t start_ns_, latest_ns_;  // latest_ns_: of all data
+  std::vector<bool> behind_;
 };
 
 }  // namespace evical

@@ -1,7 +1,7 @@
 #include "core/pipeline/repeat/repeat_calibration.h"
 
 #include "core/base/error.h"
-#include "core/base/stopwatch.h"
+#include "core/base/time.h"
 #include "core/data/quality_warning.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/chi_squared.h"
@@ -10,7 +10,7 @@
 #include "core/pipeline/compare/repeated_estimates.h"
 #include "core/pipeline/rig/prefixed_progress.h"
 #include "core/pipeline/runs/result_files.h"
-#include "core/pipeline/session/check_options.h"
+#include "core/pipeline/session/calibration_options.h"
 #include "core/report/html/html_text.h"
 #include "core/report/report_options.h"
 

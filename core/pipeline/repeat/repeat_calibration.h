@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/base/progress.h"
-#include "core/data/repeatability.h"
+#include "core/data/assessment.h"
 #include "core/pipeline/repeat/repeat_session.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/report/result_yaml.h"

@@ -3,7 +3,6 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/file_places.h"
-#include "core/base/new_folder.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/saved_run.h"
 #include "core/report/assessment_report.h"

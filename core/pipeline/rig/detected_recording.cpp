@@ -1,6 +1,6 @@
 #include "core/pipeline/rig/detected_recording.h"
 
-#include "core/data/calibration_stage.h"
+#include "core/data/calibration_observer.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"

@@ -5,7 +5,7 @@
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/quality_warning.h"
-#include "core/data/recording_fault.h"
+#include "core/data/recording.h"
 #include "core/optimisation/batch_optimiser.h"
 
 #include <string>

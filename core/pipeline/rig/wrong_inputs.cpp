@@ -1,7 +1,7 @@
 #include "core/pipeline/rig/wrong_inputs.h"
 
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/camera_model.h"
-#include "core/geometry/intrinsics_numbers.h"
 #include "core/geometry/projection_difference.h"
 #include "core/initialisation/agreement_check.h"
 #include "core/initialisation/initialisation_options.h"

@@ -6,7 +6,6 @@
 #include "core/base/progress.h"
 #include "core/data/calibration_result.h"
 #include "core/data/quality_warning.h"
-#include "core/data/wrong_input.h"
 #include "core/initialisation/initialise.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"

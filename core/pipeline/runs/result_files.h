@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/atomic_file.h"
-#include "core/data/calibration_check.h"
+#include "core/data/assessment.h"
 #include "core/export/read_back.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/report/result_yaml.h"

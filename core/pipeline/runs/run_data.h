@@ -3,7 +3,7 @@
 // in older versions have their defaults. result.yaml is the truth and run.data its cache: a checksum ties them.
 #pragma once
 
-#include "core/base/text_sink.h"
+#include "core/base/atomic_file.h"
 #include "core/format/hdf5_content.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 

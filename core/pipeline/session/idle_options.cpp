@@ -1,6 +1,6 @@
 #include "core/pipeline/session/idle_options.h"
 
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/optimisation/optimisation_options.h"
 
 #include <algorithm>

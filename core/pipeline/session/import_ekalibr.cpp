@@ -1,6 +1,6 @@
 #include "core/base/file_places.h"
 #include "core/format/intrinsics_yaml.h"
-#include "core/pipeline/session/import_sources.h"
+#include "core/pipeline/session/import_session.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
 #include "core/format/intrinsics_yaml.h"
-#include "core/pipeline/session/import_sources.h"
+#include "core/pipeline/session/import_session.h"
 #include "core/pipeline/session/session_guess.h"
 #include "core/recording/inspection.h"
 #include "core/recording/recording_reader.h"

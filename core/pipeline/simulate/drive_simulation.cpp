@@ -1,7 +1,7 @@
 #include "core/pipeline/simulate/drive_simulation.h"
 
 #include "core/base/atomic_file.h"
-#include "core/base/new_folder.h"
+#include "core/base/file_places.h"
 #include "core/export/export_target.h"
 #include "core/numerics/angles.h"
 #include "core/recording/recording_writer.h"

@@ -2,10 +2,10 @@
 
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
+#include "core/base/file_places.h"
 #include "core/base/how_to.h"
-#include "core/base/new_folder.h"
 #include "core/base/time.h"
-#include "core/frames/picture_file.h"
+#include "core/frames/gray_image.h"
 #include "core/pipeline/pass/bounded_queue.h"
 #include "core/recording/recording_writer.h"
 #include "core/synthetic/event_simulator.h"

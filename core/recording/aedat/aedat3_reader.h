@@ -3,8 +3,7 @@
 #pragma once
 
 #include "core/recording/aedat/aedat3_packets.h"
-#include "core/recording/event_order.h"
-#include "core/recording/random_access_file.h"
+#include "core/recording/block_reader.h"
 #include "core/recording/recording_reader.h"
 
 #include <cstdint>

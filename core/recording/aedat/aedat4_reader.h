@@ -6,8 +6,7 @@
 #include "core/recording/aedat/packet_compression.h"
 #include "core/recording/aedat/packets.h"
 #include "core/recording/aedat/stream_description.h"
-#include "core/recording/event_order.h"
-#include "core/recording/random_access_file.h"
+#include "core/recording/block_reader.h"
 #include "core/recording/recording_reader.h"
 #include "core/recording/unpacking_limit.h"
 

@@ -1,6 +1,5 @@
 #include "core/base/error.h"
 #include "core/base/time.h"
-#include "core/recording/aedat/device_names.h"
 #include "core/recording/aedat/packet_compression.h"
 #include "core/recording/aedat/packets.h"
 #include "core/recording/aedat/stream_description.h"

@@ -1,6 +1,6 @@
 #include "core/base/time.h"
 #include "core/recording/column_guess.h"
-#include "core/recording/hdf5/ecf_decoder.h"
+#include "core/recording/hdf5/hdf5_filters.h"
 #include "core/recording/hdf5/hdf5_tables.h"
 #include "core/recording/plausible_times.h"
 

@@ -4,7 +4,11 @@
 #include "core/recording/hdf5/hdf5_library.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace evical::hdf5 {
 
@@ -28,5 +32,26 @@ void setBlosc(hid_t creation, std::size_t element_bytes, std::size_t chunk_bytes
 
 // Usual name of a filter: "32015 (Zstandard)".
 std::string filterName(H5Z_filter_t filter);
+
+}  // namespace evical::hdf5
+
+// Metavision's event compression for HDF5, filter 0x8ECF: one chunk of events.
+// Source: docs.prophesee.ai (hdf5), prophesee-ai/hdf5_ecf.
+
+namespace evical::hdf5 {
+
+// Layout of the file's compound type.
+struct EcfEvent {
+  std::uint16_t x = 0, y = 0;
+  std::int16_t p = 0;
+  std::int16_t padding = 0;
+  std::int64_t t = 0;  // us
+};
+static_assert(sizeof(EcfEvent) == 16);
+
+inline constexpr std::int64_t kNoTime_us = std::numeric_limits<std::int64_t>::min();  // no event has it
+
+// False if the bytes are damaged.
+bool decodeEcf(std::string_view bytes, std::vector<EcfEvent>& events);
 
 }  // namespace evical::hdf5

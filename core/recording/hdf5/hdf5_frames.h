@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/data/frame.h"
-#include "core/recording/hdf5/hdf5_times.h"
+#include "core/recording/hdf5/hdf5_tables.h"
 
 #include <array>
 #include <cstdint>

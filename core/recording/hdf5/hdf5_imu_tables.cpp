@@ -1,5 +1,4 @@
 #include "core/recording/hdf5/hdf5_tables.h"
-#include "core/recording/hdf5/hdf5_times.h"
 #include "core/recording/text/text_lines.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest_name.h"
-#include "core/base/trimmed.h"
+#include "core/base/plain_text.h"
 #include "core/data/recording.h"
 #include "core/recording/column_names.h"
 

@@ -2,7 +2,7 @@
 // "...-events_right.h5" per camera, and "imu_data.txt".
 #pragma once
 
-#include "core/recording/event_order.h"
+#include "core/recording/block_reader.h"
 #include "core/recording/recording_reader.h"
 
 #include <cstdint>

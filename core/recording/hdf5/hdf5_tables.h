@@ -1,9 +1,10 @@
 // Events and IMU samples of datasets in any of the known layouts.
 #pragma once
 
+#include "core/recording/hdf5/hdf5_dataset.h"
+
 #include "core/data/event.h"
 #include "core/data/imu_units.h"
-#include "core/recording/hdf5/hdf5_dataset.h"
 
 #include <array>
 #include <cstdint>
@@ -92,5 +93,40 @@ std::unique_ptr<ImuTable> openImuRows(hid_t file, const DatasetInfo& times, cons
                                       const std::string& place);
 // TUM-VIE's imu_data.txt: t in us, angular rate, acceleration, temperature.
 std::unique_ptr<ImuTable> openImuText(const std::filesystem::path& path);
+
+}  // namespace evical::hdf5
+
+// A column of times, of whole numbers or real ones.
+
+namespace evical::hdf5 {
+
+class Times {
+ public:
+  // Writes the type of its numbers to `time`.
+  Times(hid_t file, const DatasetInfo& info, TimeScale& time, const std::string& place) {
+    constexpr std::int64_t kNanoseconds = 100'000'000'000'000'000;
+    time.is_real = info.isReal();
+    if (time.is_real) {
+      real_.emplace(file, info, H5T_NATIVE_DOUBLE, place);
+      time.unit_ns = 1;
+      return;
+    }
+    whole_.emplace(file, info, H5T_NATIVE_INT64, place);
+    const auto first = whole_->numbersFrom(0);
+    if (!first.empty() && (first[0] > kNanoseconds || first[0] < -kNanoseconds)) time.unit_ns = 1;
+  }
+
+  DatasetRows& rows() { return real_ ? static_cast<DatasetRows&>(*real_) : *whole_; }
+
+  // Time of a row of rows().
+  bool convert(std::uint64_t row, const TimeScale& time, std::int64_t& time_ns) {
+    return real_ ? time.convert(real_->numbersFrom(row)[0], time_ns)
+                 : time.convert(whole_->numbersFrom(row)[0], time_ns);
+  }
+
+ private:
+  std::optional<Rows<std::int64_t>> whole_;
+  std::optional<Rows<double>> real_;
+};
 
 }  // namespace evical::hdf5

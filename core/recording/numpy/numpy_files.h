@@ -1,6 +1,7 @@
 // The arrays in files and folders.
 #pragma once
 
+#include "core/recording/numpy/byte_stream.h"
 #include "core/recording/numpy/numpy_columns.h"
 
 #include <filesystem>
@@ -30,5 +31,24 @@ std::vector<std::filesystem::path> numberedFiles(const std::filesystem::path& fo
 
 // True if a file with this beginning is an array or an archive of arrays.
 bool isArrayFile(const std::filesystem::path& path, std::string_view first_bytes);
+
+}  // namespace evical::numpy
+
+// The directory of a ZIP archive, such as .npz files are: members stored or deflated, of any size (zip64).
+
+namespace evical::numpy {
+
+struct ZipMember {
+  std::string name;
+  ByteRange range;
+  bool cut = false;     // the file has fewer bytes than the directory states
+  std::string problem;  // reason if it cannot be read; otherwise empty
+};
+
+// Throws CalibrationError (BadInput) if the directory, which is at the end, is missing or damaged.
+std::vector<ZipMember> zipMembers(const std::filesystem::path& path);
+
+// Name of the first member of a file with this beginning; empty for other files than ZIP archives.
+std::string_view firstZipMember(std::string_view first_bytes);
 
 }  // namespace evical::numpy

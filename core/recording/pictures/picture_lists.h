@@ -2,7 +2,7 @@
 // pictures without times.
 #pragma once
 
-#include "core/data/recording_fault.h"
+#include "core/data/recording.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "core/recording/prophesee/raw_header.h"
 
 #include "core/base/error.h"
-#include "core/base/trimmed.h"
+#include "core/base/plain_text.h"
 #include "core/recording/byte_cursor.h"
 
 #include <fmt/format.h>

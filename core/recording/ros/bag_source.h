@@ -2,7 +2,7 @@
 // bag is read, and the missing parts are reported to the FaultSink.
 #pragma once
 
-#include "core/recording/random_access_file.h"
+#include "core/recording/block_reader.h"
 #include "core/recording/ros/bag_records.h"
 #include "core/recording/ros/message_source.h"
 #include "core/recording/unpacking_limit.h"

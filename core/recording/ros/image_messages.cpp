@@ -2,7 +2,7 @@
 
 #include "core/data/recording.h"
 #include "core/format/picture_header.h"
-#include "core/recording/ros/message_bytes.h"
+#include "core/recording/ros/message_cursor.h"
 
 #include <algorithm>
 #include <iterator>

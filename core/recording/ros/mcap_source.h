@@ -2,7 +2,7 @@
 // has no summary is read in sequence.
 #pragma once
 
-#include "core/recording/random_access_file.h"
+#include "core/recording/block_reader.h"
 #include "core/recording/ros/mcap_records.h"
 #include "core/recording/ros/message_source.h"
 #include "core/recording/unpacking_limit.h"

@@ -3,7 +3,7 @@
 #include "core/recording/part_file.h"
 #include "core/recording/ros/compression.h"
 #include "core/recording/ros/mcap_records.h"
-#include "core/recording/ros/message_bytes.h"
+#include "core/recording/ros/message_cursor.h"
 
 #include <zlib.h>
 

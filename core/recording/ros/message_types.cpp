@@ -1,6 +1,6 @@
 #include "core/recording/ros/message_types.h"
 
-#include "core/base/trimmed.h"
+#include "core/base/plain_text.h"
 
 #include <fmt/format.h>
 

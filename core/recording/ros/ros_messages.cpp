@@ -2,7 +2,7 @@
 
 #include "core/base/time.h"
 #include "core/data/recording.h"
-#include "core/recording/ros/message_bytes.h"
+#include "core/recording/ros/message_cursor.h"
 
 #include <algorithm>
 #include <array>

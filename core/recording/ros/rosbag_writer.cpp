@@ -3,7 +3,7 @@
 #include "core/base/time.h"
 #include "core/recording/part_file.h"
 #include "core/recording/ros/bag_records.h"
-#include "core/recording/ros/message_bytes.h"
+#include "core/recording/ros/message_cursor.h"
 #include "core/recording/ros/message_types.h"
 
 #include <algorithm>

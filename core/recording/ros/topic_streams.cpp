@@ -3,7 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/number.h"
 #include "core/base/time.h"
-#include "core/recording/event_order.h"
+#include "core/recording/block_reader.h"
 #include "core/recording/ros/image_messages.h"
 #include "core/recording/ros/ros_messages.h"
 

@@ -1,6 +1,6 @@
 #include "core/recording/text/table_head.h"
 
-#include "core/base/trimmed.h"
+#include "core/base/plain_text.h"
 #include "core/recording/text/text_lines.h"
 
 #include <algorithm>

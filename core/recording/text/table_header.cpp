@@ -2,7 +2,7 @@
 
 #include "core/base/how_to.h"
 #include "core/base/nearest_name.h"
-#include "core/base/trimmed.h"
+#include "core/base/plain_text.h"
 #include "core/recording/text/table_axes.h"
 #include "core/recording/text/table_times.h"
 

@@ -1,7 +1,7 @@
 #include "core/recording/text/text_columns.h"
 
+#include "core/base/plain_text.h"
 #include "core/base/time.h"
-#include "core/base/trimmed.h"
 #include "core/numerics/robust.h"
 #include "core/recording/column_guess.h"
 #include "core/recording/text/table_times.h"

@@ -1,6 +1,6 @@
 #include "core/report/html/advice.h"
 
-#include "core/data/wrong_input.h"
+#include "core/data/quality_warning.h"
 #include "core/numerics/angles.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"

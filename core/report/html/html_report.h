@@ -2,12 +2,10 @@
 // plots' data as CSV. A failed calibration has a report, too: the reason, and the available data.
 #pragma once
 
-#include "core/data/calibration_check.h"
+#include "core/data/assessment.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/intrinsics_result.h"
-#include "core/data/maintenance.h"
 #include "core/data/recording.h"
-#include "core/data/repeatability.h"
 #include "core/report/result_yaml.h"
 
 #include <cstdint>

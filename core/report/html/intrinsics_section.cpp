@@ -1,7 +1,6 @@
 // Cameras whose intrinsics were calibrated first: parameters, accuracy of the projection, missing views.
 #include "core/base/element.h"
-#include "core/geometry/intrinsics_numbers.h"
-#include "core/report/html/heat_map.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"

@@ -3,7 +3,6 @@
 #include "core/report/assessment_report.h"
 #include "core/report/html/assessment_section.h"
 #include "core/report/html/html_text.h"
-#include "core/report/html/plot_table.h"
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
 

@@ -1,8 +1,8 @@
 // Verdict, results with their sigmas, geometry of the sensors.
 #include "core/base/element.h"
-#include "core/base/shell_word.h"
+#include "core/base/plain_text.h"
 #include "core/data/intrinsics_result.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/numerics/angles.h"
 #include "core/report/html/html_text.h"
 #include "core/report/html/report_page.h"

@@ -1,7 +1,6 @@
 #include "core/report/html/report_page.h"
 
 #include "core/report/html/html_text.h"
-#include "core/report/html/report_style.h"
 
 #include <fmt/format.h>
 

@@ -2,6 +2,8 @@
 
 #include "core/report/html/html_text.h"
 
+#include "core/report/csv_text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -210,6 +212,78 @@ std::string SvgPlot::svg() const {
              "<svg viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" role=\"img\" "
              "aria-label=\"{2}\">\n{3}{4}{5}</svg>\n",
              frame_.width, frame_.height, escaped(frame_.title), axes(), marks_, legend_);
+}
+
+}  // namespace evical::html
+
+namespace evical::html {
+
+std::string heatMapSvg(const std::string& title, const std::vector<std::string>& names,
+                       const Eigen::MatrixXd& values) {
+  constexpr double kLargest_px = 860.0, kLetter_px = 7.2;
+  const auto count = static_cast<double>(names.size());
+  std::size_t longest = 0;
+  for (const std::string& name : names) longest = std::max(longest, name.size());
+  const double left = std::min(340.0, kLetter_px * static_cast<double>(longest) + 34.0), top = 8.0;
+  const double cell = std::clamp((kLargest_px - left - 24.0) / count, 6.0, 22.0);
+  const double width = left + cell * count + 24.0, height = top + cell * count + 26.0;
+  std::string text =
+      plotTitle(title) +
+      fmt::format(
+          "<svg viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" height=\"{1:.0f}\" role=\"img\" "
+          "aria-label=\"{2}\">\n",
+          width, height, escaped(title));
+  for (std::size_t row = 0; row < names.size(); ++row) {
+    const double y = top + cell * static_cast<double>(row);
+    text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{} {}</text>\n", left - 5.0,
+                        y + 0.5 * cell + 4.0, escaped(names[row]), row + 1);
+    if (cell > 14.0 || row % 5 == 4)
+      text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
+                          left + cell * (static_cast<double>(row) + 0.5), height - 8.0, row + 1);
+    for (std::size_t col = 0; col < names.size(); ++col) {
+      const double value = values(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col));
+      if (!std::isfinite(value) || std::abs(value) < 0.02) continue;
+      text += fmt::format(
+          "<rect class=\"fill {}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" "
+          "fill-opacity=\"{:.2f}\"><title>{} / {}: {}</title></rect>\n",
+          value > 0.0 ? "warm" : "cold", left + cell * static_cast<double>(col), y, cell - 0.5, cell - 0.5,
+          std::min(1.0, std::abs(value)), escaped(names[row]), escaped(names[col]), number(value, 2));
+    }
+  }
+  return text + fmt::format(
+                    "<rect class=\"frame\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
+                    "height=\"{:.1f}\"/>\n</svg>\n",
+                    left, top, cell * count, cell * count);
+}
+
+}  // namespace evical::html
+
+namespace evical::html {
+PlotTable::PlotTable(std::string file_name, std::vector<std::string> column_names)
+    : file(std::move(file_name)), columns(std::move(column_names)), values(columns.size()) {}
+
+void PlotTable::add(const std::vector<double>& row) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i].push_back(row.at(i));
+}
+
+std::string tableCsv(const PlotTable& table) {
+  std::string text = table.label_column;
+  for (const std::string& column : table.columns) text += (text.empty() ? "" : ",") + column;
+  text += "\n";
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (!table.label_column.empty()) text += quotedCsv(table.labels.at(row)) + ",";
+    for (std::size_t col = 0; col < table.values.size(); ++col) {
+      if (col > 0) text += ",";
+      const double value = table.values[col][row];
+      if (std::isfinite(value)) fmt::format_to(std::back_inserter(text), "{:.9g}", value);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::size_t strideFor(std::size_t count, std::size_t most) {
+  return std::max<std::size_t>(1, (count + most - 1) / most);
 }
 
 }  // namespace evical::html

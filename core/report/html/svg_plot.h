@@ -2,6 +2,9 @@
 // light and dark. Values that are not finite or outside the range are not drawn (lines break there).
 #pragma once
 
+#include <Eigen/Core>
+
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -61,5 +64,40 @@ class SvgPlot {
   double left_ = 70.0, right_ = 12.0, top_ = 26.0, bottom_ = 42.0;
   std::string marks_, legend_;
 };
+
+}  // namespace evical::html
+
+// Square matrix of numbers between -1 and 1 as coloured cells; rows and columns have the same names.
+
+namespace evical::html {
+
+// Positive values have class "warm", negative ones "cold", with an opacity that grows with their size; each
+// cell has its value as tooltip.
+std::string heatMapSvg(const std::string& title, const std::vector<std::string>& names,
+                       const Eigen::MatrixXd& values);
+
+}  // namespace evical::html
+
+// Data of one plot, which is drawn only from them. They are written next to the report as CSV.
+
+namespace evical::html {
+
+struct PlotTable {
+  std::string file;                         // "plots/camera1_windows.csv"; without the sensor's name
+  std::vector<std::string> columns;         // with units
+  std::vector<std::vector<double>> values;  // by column, all of one length
+  std::string label_column;                 // header of a first column of labels; empty if there is none
+  std::vector<std::string> labels;
+
+  PlotTable(std::string file_name, std::vector<std::string> column_names);
+  void add(const std::vector<double>& row);
+  std::size_t rows() const { return values.empty() ? 0 : values.front().size(); }
+};
+
+// Values that are not finite become empty cells; labels are quoted.
+std::string tableCsv(const PlotTable& table);
+
+// Stride that shows at most `most` of `count` items.
+std::size_t strideFor(std::size_t count, std::size_t most);
 
 }  // namespace evical::html

@@ -1,4 +1,4 @@
-#include "core/base/shell_word.h"
+#include "core/base/plain_text.h"
 #include "tests/support/test_program.h"
 
 #include <QProcess>

@@ -1,7 +1,7 @@
 // A camera's motion in a window, estimated from slopes simulated from a known motion.
-#include "core/egomotion/window_motion.h"
+#include "core/egomotion/camera_record.h"
 
-#include "core/egomotion/edge_row.h"
+#include "core/egomotion/window_fit.h"
 #include "core/geometry/so3.h"
 #include "tests/support/moving_camera.h"
 #include "tests/support/test_program.h"

@@ -1,5 +1,5 @@
+#include "core/export/export_text.h"
 #include "core/export/kalibr_text.h"
-#include "core/export/ros_camera.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/geometry/projection_difference.h"
 #include "core/report/intrinsics_report.h"

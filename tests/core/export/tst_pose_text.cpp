@@ -3,8 +3,8 @@
 
 #include "core/export/rig.h"
 #include "core/numerics/angles.h"
-#include "core/report/quantity_labels.h"
 #include "core/report/result_table.h"
+#include "core/report/shown_quantity.h"
 #include "tests/core/export/exported_rig.h"
 #include "tests/support/own_result.h"
 #include "tests/support/test_program.h"

@@ -3,7 +3,7 @@
 #include "core/base/error.h"
 #include "core/frames/blink_tracker.h"
 #include "core/frames/saddle_measurement.h"
-#include "core/frames/still_views.h"
+#include "core/frames/views_from_frames.h"
 #include "core/geometry/camera_model.h"
 #include "tests/support/rendered_board.h"
 #include "tests/support/test_program.h"

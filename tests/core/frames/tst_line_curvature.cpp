@@ -1,7 +1,6 @@
 // A wide lens bends the board's lines, so that gradients around a corner alone would give a biased position.
 #include "core/frames/board_finder.h"
 #include "core/frames/corner_measurement.h"
-#include "core/frames/line_curvature.h"
 #include "core/geometry/camera_model.h"
 #include "core/geometry/circle_conic.h"
 #include "tests/support/rendered_board.h"

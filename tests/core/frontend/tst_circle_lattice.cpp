@@ -1,6 +1,6 @@
 #include "core/frontend/moving_circle.h"
 
-#include "core/frontend/circle_lattice.h"
+#include "core/frontend/board_placement.h"
 #include "tests/support/test_program.h"
 
 #include <map>

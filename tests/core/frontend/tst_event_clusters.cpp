@@ -1,4 +1,4 @@
-#include "core/frontend/event_clusters.h"
+#include "core/frontend/normal_flow.h"
 
 #include "tests/core/frontend/synthetic_bursts.h"
 #include "tests/support/random_vector.h"

@@ -1,4 +1,4 @@
-#include "core/frontend/pixel_level.h"
+#include "core/frontend/edge_crossings.h"
 #include "tests/support/test_program.h"
 
 #include <cmath>

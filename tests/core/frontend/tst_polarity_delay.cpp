@@ -1,6 +1,6 @@
 // Delay of brightening edges relative to darkening ones, estimated from the apparent growth of circles with
 // speed.
-#include "core/frontend/polarity_delay.h"
+#include "core/frontend/edge_crossings.h"
 #include "tests/support/test_program.h"
 
 #include <cmath>

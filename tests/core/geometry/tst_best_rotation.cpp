@@ -1,5 +1,4 @@
 // Rotated directions, and mirrored ones.
-#include "core/geometry/best_rotation.h"
 #include "core/geometry/so3.h"
 #include "tests/support/test_program.h"
 

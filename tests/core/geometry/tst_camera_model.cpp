@@ -1,7 +1,6 @@
 #include "core/geometry/camera_model.h"
 
 #include "core/base/error.h"
-#include "core/geometry/undistortion_table.h"
 #include "tests/support/numeric_jacobian.h"
 #include "tests/support/test_program.h"
 

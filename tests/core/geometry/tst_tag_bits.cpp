@@ -1,5 +1,5 @@
 // The tags' bits against the pictures that the family's own library draws.
-#include "core/geometry/tag_bits.h"
+#include "core/geometry/marker_bits.h"
 #include "tests/support/test_program.h"
 
 #include <apriltag/apriltag.h>

@@ -1,4 +1,4 @@
-#include "core/initialisation/piecewise_time_offset.h"
+#include "core/initialisation/time_offset.h"
 #include "tests/support/test_program.h"
 
 #include <functional>

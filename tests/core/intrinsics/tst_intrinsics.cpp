@@ -5,7 +5,6 @@
 #include "core/intrinsics/circle_centre_cost.h"
 #include "core/intrinsics/estimate_intrinsics.h"
 #include "core/intrinsics/intrinsics_start.h"
-#include "core/intrinsics/view_selection.h"
 #include "core/synthetic/board_truth.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/numeric_jacobian.h"

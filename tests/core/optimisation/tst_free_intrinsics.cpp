@@ -1,7 +1,7 @@
 // Intrinsics as unknowns of the batch, started at a lens that differs slightly from the true one.
 #include "core/data/intrinsics_result.h"
 #include "core/data/quantity.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/projection_difference.h"
 #include "core/optimisation/batch_optimiser.h"
 #include "core/optimisation/uncertainty/covariance.h"

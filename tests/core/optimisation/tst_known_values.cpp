@@ -1,6 +1,5 @@
 // Fixed, weighted and estimated quantities, and the axes of an IMU that never moved.
 #include "core/optimisation/known_values.h"
-#include "core/optimisation/unexcited_axes.h"
 #include "core/optimisation/weights.h"
 
 #include "tests/core/optimisation/simulated_rig.h"

@@ -1,5 +1,4 @@
 #include "core/recording/inspection.h"
-#include "core/recording/inspection_json.h"
 #include "tests/core/recording/aedat/aedat3_builder.h"
 #include "tests/core/recording/bag_builder.h"
 #include "tests/core/recording/picture_samples.h"

@@ -2,7 +2,7 @@
 // Change of each quantity since an old result, with its numbers below it, and the changes during the logs.
 #pragma once
 
-#include "core/data/maintenance.h"
+#include "core/data/assessment.h"
 #include "ui/screens/assessment/copy_table.h"
 
 #include <vector>

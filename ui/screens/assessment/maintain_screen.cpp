@@ -4,7 +4,7 @@
 #include "core/base/error.h"
 #include "ui/screens/assessment/file_list.h"
 #include "ui/screens/assessment/finding_table.h"
-#include "ui/screens/assessment/old_result_row.h"
+#include "ui/screens/assessment/path_row.h"
 #include "ui/screens/assessment/work_bar.h"
 
 #include <QComboBox>

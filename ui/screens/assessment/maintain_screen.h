@@ -2,7 +2,7 @@
 // Maintenance of IMUs: compares logs with an old result and shows what has changed, and when.
 #pragma once
 
-#include "core/data/maintenance.h"
+#include "core/data/assessment.h"
 #include "core/pipeline/maintain/imu_logs.h"
 #include "ui/screens/assessment/assessment_screen.h"
 

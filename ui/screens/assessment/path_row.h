@@ -7,6 +7,8 @@
 #include <QWidget>
 
 #include <map>
+#include <utility>
+#include <vector>
 
 class QGridLayout;
 class QLabel;
@@ -45,6 +47,29 @@ class PathRow : public QObject {
   QString tip_, path_;  // path_: the last one that was set; the user may have typed another
   std::map<QString, QString> titles_;
   bool by_hand_ = false;
+};
+
+}  // namespace evical::ui
+
+// Row for an old result in a form: a folder, a file, or one of the session's runs.
+
+namespace evical::ui {
+
+class OldResultRow : public PathRow {
+  Q_OBJECT
+
+ public:
+  OldResultRow(const QString& object_name, QGridLayout& grid, QWidget* parent);
+
+  // By title and folder; listed after the entries for files, and shown by their titles.
+  void setKeptRuns(const std::vector<std::pair<QString, QString>>& runs);
+
+ signals:
+  void folderRequested();
+  void fileRequested();
+
+ private:
+  QMenu* menu_;
 };
 
 }  // namespace evical::ui

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/assessment/repeat_screen.h"
 
+#include "ui/screens/assessment/assessment_screen.h"
 #include "ui/screens/assessment/file_list.h"
 #include "ui/screens/assessment/path_row.h"
 #include "ui/screens/assessment/repeat_table.h"
-#include "ui/screens/assessment/verdict_line.h"
 #include "ui/screens/assessment/work_bar.h"
 #include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"

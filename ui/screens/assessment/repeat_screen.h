@@ -3,7 +3,7 @@
 // ones do not fit, and a comparison of any two.
 #pragma once
 
-#include "core/data/repeatability.h"
+#include "core/data/assessment.h"
 #include "ui/screens/assessment/assessment_screen.h"
 
 #include <optional>

@@ -2,7 +2,7 @@
 #include "ui/screens/assessment/result_check_screen.h"
 
 #include "ui/screens/assessment/finding_table.h"
-#include "ui/screens/assessment/old_result_row.h"
+#include "ui/screens/assessment/path_row.h"
 #include "ui/screens/assessment/work_bar.h"
 
 #include <QGridLayout>

@@ -3,7 +3,7 @@
 // this recording would have shown.
 #pragma once
 
-#include "core/data/calibration_check.h"
+#include "core/data/assessment.h"
 #include "ui/screens/assessment/assessment_screen.h"
 
 namespace evical::ui {

@@ -2,7 +2,7 @@
 #include "ui/screens/board/board_form.h"
 
 #include "ui/forms/fold_button.h"
-#include "ui/forms/form_label.h"
+#include "ui/forms/form_words.h"
 #include "ui/forms/number_field.h"
 #include "ui/screens/board/board_drawing.h"
 #include "ui/screens/wrapped_label.h"

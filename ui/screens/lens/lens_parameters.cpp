@@ -2,7 +2,7 @@
 #include "ui/screens/lens/lens_parameters.h"
 
 #include "core/base/number.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 
 #include <QObject>
 

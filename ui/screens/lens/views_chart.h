@@ -2,7 +2,7 @@
 // Chart of the views of a lens: distance and tilt of the board. One dot per view, larger for more points.
 #pragma once
 
-#include "core/data/intrinsics_story.h"
+#include "core/data/intrinsics_result.h"
 
 #include <QWidget>
 

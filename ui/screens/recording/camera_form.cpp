@@ -3,9 +3,9 @@
 
 #include "core/base/error.h"
 #include "core/format/intrinsics_yaml.h"
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/lens_fit.h"
-#include "ui/forms/form_label.h"
+#include "ui/forms/form_words.h"
 #include "ui/screens/recording/clock_offset_field.h"
 #include "ui/theme/theme.h"
 

@@ -3,7 +3,7 @@
 
 #include "core/numerics/angles.h"
 
-#include "ui/forms/form_label.h"
+#include "ui/forms/form_words.h"
 #include "ui/screens/recording/clock_offset_field.h"
 
 #include <QComboBox>

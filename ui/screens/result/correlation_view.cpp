@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/result/correlation_view.h"
 
-#include "core/report/quantity_labels.h"
+#include "core/report/shown_quantity.h"
 #include "ui/jobs/file_saver.h"
 #include "ui/theme/theme.h"
 

@@ -1,7 +1,6 @@
 // A batch file, and the outcomes of its jobs, which decide what runs again.
 #include "core/base/error.h"
 #include "core/pipeline/batch/batch_jobs.h"
-#include "core/pipeline/batch/batch_outcome.h"
 #include "core/pipeline/batch/batch_run.h"
 #include "tests/support/test_program.h"
 

@@ -3,7 +3,7 @@
 #include "core/pipeline/rig/recording_assessment.h"
 
 #include "core/base/error.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/rig/calibration_pipeline.h"

@@ -2,7 +2,7 @@
 // data and lists what is missing.
 #include "core/base/error.h"
 #include "core/base/time.h"
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/pass/view_rejection.h"
 #include "core/pipeline/runs/result_files.h"

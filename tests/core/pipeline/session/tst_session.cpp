@@ -1,4 +1,4 @@
-#include "core/frontend/front_end_options.h"
+#include "core/frontend/detection_options.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/session.h"

@@ -1,4 +1,4 @@
-#include "core/geometry/intrinsics_numbers.h"
+#include "core/geometry/camera_intrinsics.h"
 
 #include <algorithm>
 #include <iterator>
