@@ -122,6 +122,7 @@ struct CalibrationInput {
   std::size_t worldCamera() const { return imus.empty() ? reference_camera : 0; }
   // True if this camera is the reference of the rig.
   bool isReferenceCamera(std::size_t camera) const { return imus.empty() && camera == reference_camera; }
+  bool isReferenceImu(std::size_t imu) const { return imu == reference_imu; }
 };
 
 }  // namespace evical

@@ -43,8 +43,7 @@ const QuantityInfo& quantityInfo(QuantityOwner owner, QuantityId id) {
   const auto look = [&](const auto& row) {
     if (row.info.is(owner, id)) found = &row.info;
   };
-  forEachQuantity(kCameraQuantities, look);
-  forEachQuantity(kImuQuantities, look);
+  forEachSensorKind([&](auto kind) { forEachQuantity(kind.rows(), look); });
   forEachQuantity(kBoardQuantities, look);
   if (found == nullptr) throw std::out_of_range("no such quantity");
   return *found;
@@ -93,8 +92,9 @@ std::vector<QuantityAddress> quantityAddresses(const CalibrationState& state) {
       add(quantityAddress(row.info, k, value), quantityParts(row.info, value).size());
     });
   };
-  for (std::size_t k = 0; k < state.cameras.size(); ++k) addRows(kCameraQuantities, k, state.cameras[k]);
-  for (std::size_t k = 0; k < state.imus.size(); ++k) addRows(kImuQuantities, k, state.imus[k]);
+  forEachSensorKind([&](auto kind) {
+    for (std::size_t k = 0; k < kind.of(state).size(); ++k) addRows(kind.rows(), k, kind.of(state)[k]);
+  });
   for (std::size_t k = 0; k <= state.further_boards.size(); ++k)
     addRows(kBoardQuantities, k, state.boardAt(k));
   add({}, quantityParts(kGravityQuantity).size());

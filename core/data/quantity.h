@@ -474,6 +474,50 @@ constexpr void forEachQuantity(const Rows& rows, Visitor&& visit) {
   std::apply([&](const auto&... row) { (visit(row), ...); }, rows);
 }
 
+// The kinds of sensors: their key in files, their rows, and where a rig, its state or its uncertainty has them.
+struct CameraSensors {
+  static constexpr const char* kKey = "cameras";
+  static constexpr QuantityOwner kOwner = QuantityOwner::Camera;
+  static constexpr const auto& rows() { return kCameraQuantities; }
+  template <class Rig>
+  static constexpr auto& of(Rig& rig) {
+    return rig.cameras;
+  }
+  template <class Rig>
+  static constexpr auto& namesOf(Rig& rig) {
+    return rig.camera_names;
+  }
+  template <class Input>
+  static bool isReference(const Input& input, std::size_t camera) {
+    return input.isReferenceCamera(camera);
+  }
+};
+struct ImuSensors {
+  static constexpr const char* kKey = "imus";
+  static constexpr QuantityOwner kOwner = QuantityOwner::Imu;
+  static constexpr const auto& rows() { return kImuQuantities; }
+  template <class Rig>
+  static constexpr auto& of(Rig& rig) {
+    return rig.imus;
+  }
+  template <class Rig>
+  static constexpr auto& namesOf(Rig& rig) {
+    return rig.imu_names;
+  }
+  template <class Input>
+  static bool isReference(const Input& input, std::size_t imu) {
+    return input.isReferenceImu(imu);
+  }
+};
+
+// Calls visit(kind) with an object of each. Code that treats all sensors alike uses it, so that another kind
+// needs only its rows, its members in the structs, its cost and its reader.
+template <class Visitor>
+constexpr void forEachSensorKind(Visitor&& visit) {
+  visit(CameraSensors{});
+  visit(ImuSensors{});
+}
+
 // The shape of a board's sheet: all its quantities except its pose.
 template <class Visitor>
 constexpr void forEachSheetQuantity(Visitor&& visit) {
@@ -492,8 +536,9 @@ void visitQuantity(const QuantityAddress& number, const In& in, Visitor&& visit)
     });
   };
   const auto of = [&](auto&... each) {
-    if (number.owner == QuantityOwner::Camera) among(kCameraQuantities, each.cameras.at(number.sensor)...);
-    if (number.owner == QuantityOwner::Imu) among(kImuQuantities, each.imus.at(number.sensor)...);
+    forEachSensorKind([&](auto kind) {
+      if (number.owner == kind.kOwner) among(kind.rows(), kind.of(each).at(number.sensor)...);
+    });
     if (number.owner == QuantityOwner::Board) among(kBoardQuantities, each.boardAt(number.sensor)...);
   };
   std::apply(of, in);

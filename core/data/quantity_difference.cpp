@@ -144,18 +144,15 @@ std::vector<QuantityDifference> difference(const Estimate& a, const Estimate& b)
                    fmt::format("the result has '{}', the truth has '{}'", a.reference, b.reference),
                    "Compare results of the same sensors; if only the names differ, rename the sensors");
   Differences differences;
-  for (std::size_t i = 0; i < a.camera_names.size(); ++i) {
-    const std::size_t j = sensorIndex(a.camera_names[i], b.camera_names, "cameras");
-    const CameraState other = atTimeOf(a.cameras.at(i), b.cameras.at(j));
-    compareSensor(kCameraQuantities, a.camera_names[i], Side{a.cameras.at(i), a.uncertainty.cameras.at(i)},
-                  Side{other, b.uncertainty.cameras.at(j)}, false, differences);
-  }
-  for (std::size_t i = 0; i < a.imu_names.size(); ++i) {
-    const std::size_t j = sensorIndex(a.imu_names[i], b.imu_names, "imus");
-    const ImuState other = atTimeOf(a.imus.at(i), b.imus.at(j));
-    compareSensor(kImuQuantities, a.imu_names[i], Side{a.imus.at(i), a.uncertainty.imus.at(i)},
-                  Side{other, b.uncertainty.imus.at(j)}, a.imu_names[i] == a.reference, differences);
-  }
+  forEachSensorKind([&](auto kind) {
+    const std::vector<std::string>& names = kind.namesOf(a);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::size_t j = sensorIndex(names[i], kind.namesOf(b), kind.kKey);
+      const auto other = atTimeOf(kind.of(a).at(i), kind.of(b).at(j));
+      compareSensor(kind.rows(), names[i], Side{kind.of(a).at(i), kind.of(a.uncertainty).at(i)},
+                    Side{other, kind.of(b.uncertainty).at(j)}, names[i] == a.reference, differences);
+    }
+  });
   for (std::size_t i = 0; i < a.boards.size(); ++i) {
     const std::size_t j = i == 0 ? 0 : sensorIndex(a.board_names.at(i), b.board_names, "boards");
     compareSensor(kBoardQuantities, a.board_names.at(i), Side{a.boards[i], a.uncertainty.boardAt(i)},
@@ -175,8 +172,7 @@ double gravityDirectionDifference_rad(const Estimate& a, const Estimate& b) {
 
 UncertaintyReport differenceUncertainty(const UncertaintyReport& a, const UncertaintyReport& b) {
   UncertaintyReport sum = a;
-  addSensors(kCameraQuantities, sum.cameras, b.cameras);
-  addSensors(kImuQuantities, sum.imus, b.imus);
+  forEachSensorKind([&](auto kind) { addSensors(kind.rows(), kind.of(sum), kind.of(b)); });
   addSigmas(kBoardQuantities, sum.board, b.board);
   addSensors(kBoardQuantities, sum.further_boards, b.further_boards);
   sum.gravity_norm_std_m_s2 = std::hypot(a.gravity_norm_std_m_s2, b.gravity_norm_std_m_s2);

@@ -3,14 +3,16 @@
 namespace evical {
 namespace {
 
-// visit(row, given value) of a sensor's given quantities; a reference has no pose.
-template <class Rows, class Prior, class Visitor>
-void forEachGiven(const Rows& rows, const OptimisationOptions& options, bool reference, const Prior& prior,
-                  Visitor&& visit) {
-  forEachPriorQuantity(rows, [&](const auto& row) {
-    if (reference && row.info.relative) return;
-    const auto known = effectivePrior(row.info, options, row.prior(prior));
-    if (isGiven(known)) visit(row, *known);
+// visit(kind, sensor's index, row, given value) of all given quantities; a reference has no pose.
+template <class Visitor>
+void forEachGiven(const CalibrationInput& input, const OptimisationOptions& options, Visitor&& visit) {
+  forEachSensorKind([&](auto kind) {
+    for (std::size_t i = 0; i < kind.of(input).size(); ++i)
+      forEachPriorQuantity(kind.rows(), [&](const auto& row) {
+        if (row.info.relative && kind.isReference(input, i)) return;
+        const auto known = effectivePrior(row.info, options, row.prior(kind.of(input)[i].prior));
+        if (isGiven(known)) visit(kind, i, row, *known);
+      });
   });
 }
 
@@ -42,25 +44,16 @@ bool isReleased(const QuantityInfo& info, const OptimisationOptions& options, bo
 
 void setGivenValues(const CalibrationInput& input, const OptimisationOptions& options,
                     CalibrationState& state) {
-  for (std::size_t i = 0; i < state.cameras.size(); ++i)
-    forEachGiven(kCameraQuantities, options, input.isReferenceCamera(i), input.cameras[i].prior,
-                 [&](const auto& row, const auto& known) { row.value(state.cameras[i]) = known.value; });
-  for (std::size_t i = 0; i < state.imus.size(); ++i)
-    forEachGiven(kImuQuantities, options, i == input.reference_imu, input.imus[i].prior,
-                 [&](const auto& row, const auto& known) { row.value(state.imus[i]) = known.value; });
+  forEachGiven(input, options, [&](auto kind, std::size_t i, const auto& row, const auto& known) {
+    row.value(kind.of(state)[i]) = known.value;
+  });
 }
 
 std::vector<std::string> givenQuantities(const CalibrationInput& input, const OptimisationOptions& options) {
   std::vector<std::string> names;
-  const auto nameOf = [&](const std::string& sensor) {
-    return [&names, &sensor](const auto& row, const auto&) { names.push_back(sensor + "." + row.info.name); };
-  };
-  for (std::size_t i = 0; i < input.cameras.size(); ++i)
-    forEachGiven(kCameraQuantities, options, input.isReferenceCamera(i), input.cameras[i].prior,
-                 nameOf(input.cameras[i].name));
-  for (std::size_t i = 0; i < input.imus.size(); ++i)
-    forEachGiven(kImuQuantities, options, i == input.reference_imu, input.imus[i].prior,
-                 nameOf(input.imus[i].name));
+  forEachGiven(input, options, [&](auto kind, std::size_t i, const auto& row, const auto&) {
+    names.push_back(kind.of(input)[i].name + "." + row.info.name);
+  });
   return names;
 }
 

@@ -115,13 +115,12 @@ std::vector<Quantity> ParameterBlocks::quantities() {
   const auto add = [&](const QuantityInfo& info, std::size_t sensor, double* block) {
     if (block != nullptr) all.push_back({&info, sensor, block});
   };
-  for (std::size_t i = 0; i < moved_.cameras.size(); ++i)
-    forEachQuantity(kCameraQuantities, [&](const auto& row) {
-      if (ownsSensor(i) || !row.info.of_sensor) add(row.info, i, of(row.value(moved_.cameras[i])));
-    });
-  for (std::size_t i = 0; i < moved_.imus.size(); ++i)
-    forEachQuantity(kImuQuantities,
-                    [&](const auto& row) { add(row.info, i, of(row.value(moved_.imus[i]))); });
+  forEachSensorKind([&](auto kind) {
+    for (std::size_t i = 0; i < kind.of(moved_).size(); ++i)
+      forEachQuantity(kind.rows(), [&](const auto& row) {
+        if (!row.info.of_sensor || ownsSensor(i)) add(row.info, i, of(row.value(kind.of(moved_)[i])));
+      });
+  });
   for (std::size_t i = 0; i <= moved_.further_boards.size(); ++i)
     forEachQuantity(kBoardQuantities,
                     [&](const auto& row) { add(row.info, i, of(row.value(moved_.boardAt(i)))); });

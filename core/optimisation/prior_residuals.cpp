@@ -105,20 +105,6 @@ void addImuPriors(ProblemBuilder& builder, std::size_t imu) {
   if (builder.turnsGyroscope(imu)) add({QuantityId::GyroscopeRotation});
 }
 
-// The session's priors and given values of one sensor.
-template <class Rows, class Prior, class State>
-void addKnownValues(ProblemBuilder& builder, const Rows& rows, const Prior& prior, State& state) {
-  forEachPriorQuantity(rows, [&](const auto& row) {
-    const auto known = effectivePrior(row.info, builder.options, row.prior(prior));
-    double* block = builder.parameters.of(row.value(state));
-    if (!known || !builder.has(block)) return;
-    if (known->isGiven())
-      builder.hold(block);
-    else
-      builder.addPrior(priorCost(row.info, known->value, quantityNumbers(*known->sigma)), {block});
-  });
-}
-
 // Possible deviation of a board from its given size: both of its directions were measured.
 void addBoardPriors(ProblemBuilder& builder, std::size_t index) {
   const PriorOwner owner{0, &builder.input.boardAt(index),
@@ -146,14 +132,23 @@ void addPriors(ProblemBuilder& builder) {
                      {gravity});
 }
 
-// A reference has no pose blocks, or they are fixed anyway.
+// The session's priors and given values. A reference has no pose.
 void addKnownValues(ProblemBuilder& builder) {
-  CalibrationState& state = builder.parameters.moved();
-  for (std::size_t i = 0; i < state.cameras.size(); ++i)
-    if (!builder.input.isReferenceCamera(i))
-      addKnownValues(builder, kCameraQuantities, builder.input.cameras[i].prior, state.cameras[i]);
-  for (std::size_t i = 0; i < state.imus.size(); ++i)
-    addKnownValues(builder, kImuQuantities, builder.input.imus[i].prior, state.imus[i]);
+  forEachSensorKind([&](auto kind) {
+    auto& sensors = kind.of(builder.parameters.moved());
+    for (std::size_t i = 0; i < sensors.size(); ++i)
+      forEachPriorQuantity(kind.rows(), [&](const auto& row) {
+        if (row.info.relative && kind.isReference(builder.input, i)) return;
+        const auto known =
+            effectivePrior(row.info, builder.options, row.prior(kind.of(builder.input)[i].prior));
+        double* block = builder.parameters.of(row.value(sensors[i]));
+        if (!known || !builder.has(block)) return;
+        if (known->isGiven())
+          builder.hold(block);
+        else
+          builder.addPrior(priorCost(row.info, known->value, quantityNumbers(*known->sigma)), {block});
+      });
+  });
 }
 
 void addSmoothness(ProblemBuilder& builder) {

@@ -98,17 +98,12 @@ bool isScale(const ShownNumber& number) {
 namespace {
 
 std::string ownerName(const QuantityAddress& number, const NamedResult& named) {
-  switch (number.owner) {
-    case QuantityOwner::Camera:
-      return named.cameras.at(number.sensor).name;
-    case QuantityOwner::Imu:
-      return named.imus.at(number.sensor).name;
-    case QuantityOwner::Board:
-      return named.boards.at(number.sensor);
-    case QuantityOwner::Rig:
-      break;
-  }
-  return kGravityQuantity.name;
+  if (number.owner == QuantityOwner::Board) return named.boards.at(number.sensor);
+  std::string name = kGravityQuantity.name;
+  forEachSensorKind([&](auto kind) {
+    if (number.owner == kind.kOwner) name = kind.of(named).at(number.sensor).name;
+  });
+  return name;
 }
 
 }  // namespace

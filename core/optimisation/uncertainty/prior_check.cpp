@@ -45,9 +45,6 @@ class Comparison {
   template <class Row, class State, class Sigma, class Prior>
   void compareRow(const std::string& sensor, const Row& row, const Prior& prior, const State& solution,
                   const State& alone, const Sigma& sigma);
-  template <class Rows, class State, class Sigma, class Prior>
-  void compareSensor(const std::string& sensor, const Rows& rows, bool reference, const Prior& prior,
-                     const State& solution, const State& alone, const Sigma& sigma);
   void compareLens(std::size_t camera);
   // Reports the number with the largest deviation.
   void judge(const std::string& name, const Unit& unit, const std::vector<Compared>& numbers,
@@ -131,15 +128,6 @@ void Comparison::compareRow(const std::string& sensor, const Row& row, const Pri
         numbers, partWords(info));
 }
 
-template <class Rows, class State, class Sigma, class Prior>
-void Comparison::compareSensor(const std::string& sensor, const Rows& rows, bool reference,
-                               const Prior& prior, const State& solution, const State& alone,
-                               const Sigma& sigma) {
-  forEachPriorQuantity(rows, [&](const auto& row) {
-    if (!(reference && row.info.relative)) compareRow(sensor, row, prior, solution, alone, sigma);
-  });
-}
-
 // Comparison of a lens that was given with sigmas.
 void Comparison::compareLens(std::size_t camera) {
   const CameraLens& lens = input_.cameras[camera].lens;
@@ -162,12 +150,14 @@ void Comparison::compareLens(std::size_t camera) {
 
 PriorCheck Comparison::run() {
   for (std::size_t i = 0; i < input_.cameras.size(); ++i) compareLens(i);
-  for (std::size_t i = 0; i < input_.cameras.size(); ++i)
-    compareSensor(input_.cameras[i].name, kCameraQuantities, input_.isReferenceCamera(i),
-                  input_.cameras[i].prior, solution_.cameras[i], alone_.cameras[i], sigmas_.cameras[i]);
-  for (std::size_t i = 0; i < input_.imus.size(); ++i)
-    compareSensor(input_.imus[i].name, kImuQuantities, i == input_.reference_imu, input_.imus[i].prior,
-                  solution_.imus[i], alone_.imus[i], sigmas_.imus[i]);
+  forEachSensorKind([&](auto kind) {
+    for (std::size_t i = 0; i < kind.of(input_).size(); ++i)
+      forEachPriorQuantity(kind.rows(), [&](const auto& row) {
+        if (row.info.relative && kind.isReference(input_, i)) return;
+        compareRow(kind.of(input_)[i].name, row, kind.of(input_)[i].prior, kind.of(solution_)[i],
+                   kind.of(alone_)[i], kind.of(sigmas_)[i]);
+      });
+  });
   return std::move(check_);
 }
 

@@ -123,6 +123,14 @@ void weigh(const Rows& rows, const State& was, const Uncertainty& uncertainty, b
   });
 }
 
+// True for a camera that has its priors from another one of the same sensor, even if its lens was estimated separately.
+bool isSecondOfSensor(const SessionCamera& camera) {
+  return !camera.same_sensor_as.empty();
+}
+bool isSecondOfSensor(const SessionImu&) {
+  return false;
+}
+
 // Adds the lens as prior with its full covariance: errors of focal length and distortion are correlated.
 void weighLens(const UncertaintyReport& before, std::size_t camera, double stability_px,
                SessionCamera& session_camera) {
@@ -150,9 +158,10 @@ CheckInput checkInputOf(NamedResult before, Session session) {
   checkSensors(input.session.cameras, input.before.cameras, "camera", input);
   checkSensors(input.session.imus, input.before.imus, "IMU", input);
   const std::vector<std::string> names = sensorNames(input.before.cameras);
-  for (SessionImu& imu : input.session.imus) dropWeighed(kImuQuantities, imu.prior);
+  forEachSensorKind([&](auto kind) {
+    for (auto& sensor : kind.of(input.session)) dropWeighed(kind.rows(), sensor.prior);
+  });
   for (SessionCamera& camera : input.session.cameras) {
-    dropWeighed(kCameraQuantities, camera.prior);
     if (!camera.same_sensor_as.empty()) continue;  // has the other camera's lens
     const auto k = std::find(names.begin(), names.end(), camera.name) - names.begin();
     setLens(input.before.result->state.cameras.at(static_cast<std::size_t>(k)), camera, input);
@@ -189,18 +198,17 @@ Session withPriorOf(const NamedResult& before, Session session) {
   const CalibrationState& state = before.result->state;
   const UncertaintyReport& sigmas = before.result->uncertainty;
   for (std::size_t k = 0; k < before.cameras.size(); ++k)
-    for (SessionCamera& camera : session.cameras) {
-      // A camera with same_sensor_as has its prior from the other camera, even if its lens was estimated separately.
-      if (camera.name != before.cameras[k].name || !camera.same_sensor_as.empty()) continue;
-      weighLens(sigmas, k, options.stability_lens_px, camera);
-      weigh(kCameraQuantities, state.cameras[k], sigmas.cameras[k], camera.name == session.reference, options,
-            camera.prior);
-    }
-  for (std::size_t k = 0; k < before.imus.size(); ++k)
-    for (SessionImu& imu : session.imus)
-      if (imu.name == before.imus[k].name)
-        weigh(kImuQuantities, state.imus[k], sigmas.imus[k], imu.name == session.reference, options,
-              imu.prior);
+    for (SessionCamera& camera : session.cameras)
+      if (camera.name == before.cameras[k].name && !isSecondOfSensor(camera))
+        weighLens(sigmas, k, options.stability_lens_px, camera);
+  forEachSensorKind([&](auto kind) {
+    for (std::size_t k = 0; k < kind.of(before).size(); ++k)
+      for (auto& sensor : kind.of(session)) {
+        if (sensor.name != kind.of(before)[k].name || isSecondOfSensor(sensor)) continue;
+        weigh(kind.rows(), kind.of(state)[k], kind.of(sigmas)[k], sensor.name == session.reference, options,
+              sensor.prior);
+      }
+  });
   return session;
 }
 

@@ -137,8 +137,9 @@ class Comparison {
         now_(estimateOf(results.now)) {}
 
   ComparedQuantities run() {
-    for (std::size_t k = 0; k < now_.camera_names.size(); ++k) addCamera(k);
-    for (std::size_t k = 0; k < now_.imu_names.size(); ++k) addImu(k);
+    forEachSensorKind([&](auto kind) {
+      for (std::size_t k = 0; k < kind.of(now_).size(); ++k) addSensor(kind, k);
+    });
     if (results_.same_board) addBoard();
     fillCovariance();
     return std::move(out_);
@@ -158,36 +159,33 @@ class Comparison {
     Side<State, Uncertainty> before, now;
   };
 
-  void addCamera(std::size_t k) {
-    const std::string& name = now_.camera_names[k];
-    const std::size_t j = sensorIndex(name, before_.camera_names, "cameras");
-    const CameraState& now = now_.cameras[k];
-    const Pair<CameraState, CameraUncertainty> pair{name,
-                                                    name == now_.reference,
-                                                    {j, before_.cameras[j], before_.uncertainty.cameras[j]},
-                                                    {k, now, now_.uncertainty.cameras[k]}};
-    forEachQuantity(kCameraQuantities, [&](const auto& row) {
-      ComparedQuantity* const added = add(row, pair);
-      if (added == nullptr || !now.lens.inUse()) return;
-      if (row.info.id == QuantityId::Rotation) added->at_edge = byTurn(now);
-      if (row.info.id == QuantityId::Intrinsics) {
-        ChangeGroup& group = out_.groups.back();
-        added->at_edge = byIntrinsics(*now.lens.inUse(), group.size, true);
-        group.to_size = lensToSize(*now.lens.inUse(), group.size);
-        group.stable_covariance = lensCovariance(*now.lens.inUse(), group.size, group.allowed_drift);
-      }
+  template <class Kind>
+  void addSensor(Kind kind, std::size_t k) {
+    const std::string& name = kind.namesOf(now_)[k];
+    const std::size_t j = sensorIndex(name, kind.namesOf(before_), kind.kKey);
+    const auto& now = kind.of(now_)[k];
+    const auto& sigma = kind.of(now_.uncertainty)[k];
+    const Pair<std::remove_cvref_t<decltype(now)>, std::remove_cvref_t<decltype(sigma)>> pair{
+        name,
+        name == now_.reference,
+        {j, kind.of(before_)[j], kind.of(before_.uncertainty)[j]},
+        {k, now, sigma}};
+    forEachQuantity(kind.rows(), [&](const auto& row) {
+      if (ComparedQuantity* const added = add(row, pair)) addImageOf(now, row.info, *added);
     });
   }
 
-  void addImu(std::size_t k) {
-    const std::string& name = now_.imu_names[k];
-    const std::size_t j = sensorIndex(name, before_.imu_names, "imus");
-    const Pair<ImuState, ImuUncertainty> pair{name,
-                                              name == now_.reference,
-                                              {j, before_.imus[j], before_.uncertainty.imus[j]},
-                                              {k, now_.imus[k], now_.uncertainty.imus[k]}};
-    forEachQuantity(kImuQuantities, [&](const auto& row) { add(row, pair); });
+  // What a change of the quantity that was added last does in the image.
+  void addImageOf(const CameraState& now, const QuantityInfo& info, ComparedQuantity& added) {
+    if (!now.lens.inUse()) return;
+    if (info.id == QuantityId::Rotation) added.at_edge = byTurn(now);
+    if (info.id != QuantityId::Intrinsics) return;
+    ChangeGroup& group = out_.groups.back();
+    added.at_edge = byIntrinsics(*now.lens.inUse(), group.size, true);
+    group.to_size = lensToSize(*now.lens.inUse(), group.size);
+    group.stable_covariance = lensCovariance(*now.lens.inUse(), group.size, group.allowed_drift);
   }
+  void addImageOf(const ImuState&, const QuantityInfo&, ComparedQuantity&) {}
 
   // Adds the board; a sheet's allowed drift is the effect of humidity on paper.
   void addBoard() {

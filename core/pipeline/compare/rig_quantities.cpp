@@ -77,22 +77,16 @@ class Listing {
   Listing(const Session& session, const CalibrationState& state, RigQuantities& out)
       : session_(session), state_(state), out_(out) {}
 
-  void addCamera(std::size_t k) {
-    const SessionCamera& camera = session_.cameras[k];
-    const PriorOwner owner{imageHeight_px(k)};
-    forEachQuantity(kCameraQuantities, [&](const auto& row) {
-      add(row, camera.name, k, owner, state_.cameras.at(k));
+  template <class Kind>
+  void addSensor(Kind kind, std::size_t k) {
+    const auto& sensor = kind.of(session_)[k];
+    const PriorOwner owner{imageHeight_px(sensor, k)};
+    forEachQuantity(kind.rows(), [&](const auto& row) {
+      add(row, sensor.name, k, owner, kind.of(state_).at(k));
       if (row.info.id == QuantityId::Intrinsics)
         setLensPrior(*session_.options.optimisation, out_.prior_means.cameras[k].lens, out_.all.back());
       else
-        setPrior(row, owner, camera.prior, out_.prior_means.cameras[k]);
-    });
-  }
-
-  void addImu(std::size_t k) {
-    forEachQuantity(kImuQuantities, [&](const auto& row) {
-      add(row, session_.imus[k].name, k, {}, state_.imus.at(k));
-      setPrior(row, {}, session_.imus[k].prior, out_.prior_means.imus[k]);
+        setPrior(row, owner, sensor.prior, kind.of(out_.prior_means)[k]);
     });
   }
 
@@ -110,10 +104,11 @@ class Listing {
 
  private:
   // The lens in use has the resolution of the recording, which the session may not give.
-  int imageHeight_px(std::size_t camera) const {
+  int imageHeight_px(const SessionCamera&, std::size_t camera) const {
     const std::optional<CameraIntrinsics>& lens = state_.cameras.at(camera).lens.inUse();
     return lens ? lens->resolution_px.height_px : session_.sensor(camera).resolution_px.height_px;
   }
+  int imageHeight_px(const SessionImu&, std::size_t) const { return 0; }
 
   template <class Row, class State>
   void add(const Row& row, const std::string& sensor, std::size_t k, const PriorOwner& owner,
@@ -194,8 +189,9 @@ Eigen::MatrixXd RigQuantity::moving(const CalibrationState& at) const {
 
 RigQuantities::RigQuantities(const Session& session, const CalibrationState& state) : prior_means(state) {
   Listing listing(session, state, *this);
-  for (std::size_t k = 0; k < session.cameras.size(); ++k) listing.addCamera(k);
-  for (std::size_t k = 0; k < session.imus.size(); ++k) listing.addImu(k);
+  forEachSensorKind([&](auto kind) {
+    for (std::size_t k = 0; k < kind.of(session).size(); ++k) listing.addSensor(kind, k);
+  });
   for (std::size_t k = 0; k <= session.further_boards.size(); ++k) listing.addBoard(k);
 }
 

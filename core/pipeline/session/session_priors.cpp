@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 namespace evical {
 namespace {
@@ -151,7 +153,7 @@ Sensor& sensorOf(const YamlNode& node, const std::string& name, std::vector<Sens
 
 // Keys of the quantities in their sections, and further keys of results.
 template <class Rows>
-void allowOnlyKeys(const YamlNode& sensor, const Rows& rows, std::initializer_list<const char*> besides) {
+void allowOnlyKeys(const YamlNode& sensor, const Rows& rows, std::span<const char* const> besides) {
   std::vector<std::string> keys = quantityKeys(rows);
   keys.insert(keys.end(), besides.begin(), besides.end());
   sensor.allowOnly(keys);
@@ -166,23 +168,16 @@ void allowOnlyKeys(const YamlNode& sensor, const Rows& rows, std::initializer_li
   });
 }
 
-void readCameraPrior(const YamlNode& map, const std::string& name, Session& session) {
-  SensorPrior& prior = sensorOf(map, name, session.cameras).prior;
-  allowOnlyKeys(
-      map, kCameraQuantities,
-      {"stream", "kind", "time_offset_at_s", "reprojection_rms_px", "normalised_rms", "neighbour_agreement",
-       "windows", "circles", "latency_s", "latency_std_s", "latency_against"});
-  readPriors(map, kCameraQuantities, prior);
-  if (name == session.reference && session.imus.empty()) dropOwnPlace(map, kCameraQuantities, prior);
+// Keys of a sensor in results that are not quantities.
+constexpr auto keysBesides(CameraSensors) {
+  return std::to_array({"stream", "kind", "time_offset_at_s", "reprojection_rms_px", "normalised_rms",
+                        "neighbour_agreement", "windows", "circles", "latency_s", "latency_std_s",
+                        "latency_against"});
 }
-
-void readImuPrior(const YamlNode& map, const std::string& name, Session& session) {
-  ImuPrior& prior = sensorOf(map, name, session.imus).prior;
-  allowOnlyKeys(map, kImuQuantities,
-                {"stream", "time_offset_at_s", "accelerometer_noise_density", "gyroscope_noise_density",
-                 "accelerometer_random_walk", "gyroscope_random_walk", "rate_hz"});
-  readPriors(map, kImuQuantities, prior);
-  if (name == session.reference) dropOwnPlace(map, kImuQuantities, prior);
+constexpr auto keysBesides(ImuSensors) {
+  return std::to_array({"stream", "time_offset_at_s", "accelerometer_noise_density",
+                        "gyroscope_noise_density", "accelerometer_random_walk", "gyroscope_random_walk",
+                        "rate_hz"});
 }
 
 // Twelve digits survive the conversion to radians and back.
@@ -216,18 +211,28 @@ std::string named(const std::string& name, const std::string& content) {
 }  // namespace
 
 void readSensorPriors(const YamlNode& prior, Session& session) {
-  if (const auto cameras = prior.find("cameras"); cameras && !cameras->isNull())
-    for (const std::string& key : cameras->keys()) readCameraPrior((*cameras)[key], key, session);
-  if (const auto imus = prior.find("imus"); imus && !imus->isNull())
-    for (const std::string& key : imus->keys()) readImuPrior((*imus)[key], key, session);
+  forEachSensorKind([&](auto kind) {
+    const auto sensors = prior.find(kind.kKey);
+    if (!sensors || sensors->isNull()) return;
+    for (const std::string& name : sensors->keys()) {
+      const YamlNode map = (*sensors)[name];
+      auto& read = sensorOf(map, name, kind.of(session)).prior;
+      allowOnlyKeys(map, kind.rows(), keysBesides(kind));
+      readPriors(map, kind.rows(), read);
+      if (name == session.reference) dropOwnPlace(map, kind.rows(), read);
+    }
+  });
 }
 
 std::string sensorPriorsYaml(const Session& session) {
-  std::string cameras, imus;
-  for (const SessionCamera& camera : session.cameras)
-    cameras += named(camera.name, priorsYaml(kCameraQuantities, camera.prior));
-  for (const SessionImu& imu : session.imus) imus += named(imu.name, priorsYaml(kImuQuantities, imu.prior));
-  return (cameras.empty() ? "" : "  cameras:\n" + cameras) + (imus.empty() ? "" : "  imus:\n" + imus);
+  std::string text;
+  forEachSensorKind([&](auto kind) {
+    std::string sensors;
+    for (const auto& sensor : kind.of(session))
+      sensors += named(sensor.name, priorsYaml(kind.rows(), sensor.prior));
+    if (!sensors.empty()) text += fmt::format("  {}:\n{}", kind.kKey, sensors);
+  });
+  return text;
 }
 
 }  // namespace evical
