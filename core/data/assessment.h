@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/data/calibration_status.h"
+#include "core/data/quantity_address.h"
 
 #include <Eigen/Core>
 
@@ -37,8 +38,9 @@ enum class FindingSource { Recording, Stops, Trajectory, OtherImu };
 
 // A quantity of one sensor: its change has a size in one unit; for a lens it is the RMS over its image.
 struct Finding {
-  std::string sensor, against;        // `against`: the sensor that it is relative to; may be empty
-  std::string quantity, title, unit;  // "translation", "lever arm", "mm"
+  std::string sensor, against;  // `against`: the sensor that it is relative to; may be empty
+  QuantityId id = QuantityId::Rotation;
+  std::string quantity, title, unit;  // as shown: "translation", "lever arm", "mm"
   FindingSource source = FindingSource::Recording;
   std::vector<ComparedNumber> numbers;
   // The change if only this quantity has changed, and all others at most by the allowed drift.

@@ -257,6 +257,7 @@ class Comparison {
     ComparedQuantity compared;
     Finding& shown = compared.shown;
     shown.sensor = pair.sensor;
+    shown.id = info.id;
     shown.quantity = info.name;
     shown.title = titleOf(info);
     shown.unit = judged.unit;

@@ -15,30 +15,32 @@
 namespace evical {
 namespace {
 
+constexpr std::string_view kMisalignment = "accelerometer_misalignment";
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
 // Name and unit of a block of numbers.
 struct BlockWords {
+  QuantityId id;
   const char *name, *title, *unit;
   double factor;  // from SI units
 };
 constexpr std::array<BlockWords, kPairBlocks.size()> kPairWords = {
-    {{"rotation", "rotation", "deg", kDegPerRad},
-     {"translation", "lever arm", "mm", 1e3},
-     {"time_offset", "time offset", "ms", 1e3},
-     {"gyroscope_bias", "gyroscope bias", "rad/s", 1.0},
-     {"accelerometer_bias", "accelerometer bias", "m/s^2", 1.0}}};
+    {{QuantityId::Rotation, "rotation", "rotation", "deg", kDegPerRad},
+     {QuantityId::Translation, "translation", "lever arm", "mm", 1e3},
+     {QuantityId::TimeOffset, "time_offset", "time offset", "ms", 1e3},
+     {QuantityId::GyroscopeBias, "gyroscope_bias", "gyroscope bias", "rad/s", 1.0},
+     {QuantityId::AccelerometerBias, "accelerometer_bias", "accelerometer bias", "m/s^2", 1.0}}};
 constexpr std::array<BlockWords, kAccelerometerBlocks.size()> kStopWords = {
-    {{"accelerometer_bias", "accelerometer bias", "m/s^2", 1.0},
-     {"accelerometer_scale", "accelerometer scale", "1", 1.0},
-     {"accelerometer_misalignment", "accelerometer misalignment", "1", 1.0}}};
+    {{QuantityId::AccelerometerBias, "accelerometer_bias", "accelerometer bias", "m/s^2", 1.0},
+     {QuantityId::AccelerometerScaleMisalignment, "accelerometer_scale", "accelerometer scale", "1", 1.0},
+     {QuantityId::AccelerometerScaleMisalignment, kMisalignment.data(), "accelerometer misalignment", "1",
+      1.0}}};
 constexpr std::array<const char*, 3> kMisalignments = {"xy", "xz", "yz"};
 
 // Empty if the block has only one number.
 std::string partName(const BlockWords& words, Eigen::Index i, Eigen::Index count) {
   if (count == 1) return {};
-  const bool cross = std::string_view(words.name) == "accelerometer_misalignment";
-  return (cross ? kMisalignments : kAxes)[static_cast<std::size_t>(i)];
+  return (words.name == kMisalignment ? kMisalignments : kAxes)[static_cast<std::size_t>(i)];
 }
 
 std::string numberName(const BlockWords& words, Eigen::Index i, Eigen::Index count) {
@@ -61,18 +63,25 @@ double sigmaOfNorm(const Eigen::VectorXd& step, const Eigen::MatrixXd& covarianc
 struct Asked {
   double allowed_drift, required_detectability;
 };
-Asked askedOf(const std::string& name, const MaintenanceOptions& options) {
-  if (name == "rotation") return {options.stability_rotation_deg, options.matters_rotation_deg};
-  if (name == "translation") return {options.stability_translation_mm, options.matters_translation_mm};
-  if (name == "time_offset") return {options.stability_time_offset_ms, options.matters_time_offset_ms};
-  if (name == "gyroscope_bias")
-    return {options.stability_gyroscope_bias_rad_s, options.matters_gyroscope_bias_rad_s};
-  if (name == "accelerometer_bias")
-    return {options.stability_accelerometer_bias_m_s2, options.matters_accelerometer_bias_m_s2};
-  return {options.stability_imu_scale, options.matters_imu_scale};
+Asked askedOf(QuantityId id, const MaintenanceOptions& options) {
+  switch (id) {
+    case QuantityId::Rotation:
+      return {options.stability_rotation_deg, options.matters_rotation_deg};
+    case QuantityId::Translation:
+      return {options.stability_translation_mm, options.matters_translation_mm};
+    case QuantityId::TimeOffset:
+      return {options.stability_time_offset_ms, options.matters_time_offset_ms};
+    case QuantityId::GyroscopeBias:
+      return {options.stability_gyroscope_bias_rad_s, options.matters_gyroscope_bias_rad_s};
+    case QuantityId::AccelerometerBias:
+      return {options.stability_accelerometer_bias_m_s2, options.matters_accelerometer_bias_m_s2};
+    default:
+      return {options.stability_imu_scale, options.matters_imu_scale};
+  }
 }
 
 void setWords(const BlockWords& words, Finding& finding) {
+  finding.id = words.id;
   finding.quantity = words.name;
   finding.title = words.title;
   finding.unit = words.unit;
@@ -85,7 +94,7 @@ Finding findingOf(const BlockWords& words, const std::string& sensor, FindingSou
   finding.sensor = sensor;
   finding.source = source;
   setWords(words, finding);
-  const Asked asked = askedOf(words.name, options);
+  const Asked asked = askedOf(words.id, options);
   finding.allowed_drift = asked.allowed_drift;
   finding.required_detectability = asked.required_detectability;
   return finding;
@@ -122,7 +131,7 @@ double squared(double value) {
 // At rest the gyroscope measures only its bias.
 void addGyroscopeBias(const StopCalibration& found, const NamedResult& before, std::size_t imu,
                       const MaintenanceOptions& options, double false_alarms, Maintenance& maintenance) {
-  constexpr BlockWords kWords = {"gyroscope_bias", "gyroscope bias", "rad/s", 1.0};
+  constexpr BlockWords kWords = {QuantityId::GyroscopeBias, "gyroscope_bias", "gyroscope bias", "rad/s", 1.0};
   const ImuState& state = before.result->state.imus[imu];
   const Eigen::Vector3d sigma_before = before.result->uncertainty.imus[imu].gyroscope_bias_std_rad_s;
   Finding finding = findingOf(kWords, before.imus[imu].name, FindingSource::Stops, options);
@@ -273,12 +282,13 @@ std::string changeText(const Finding& finding) {
 
 // Quantities between IMUs if there are several; otherwise those of the single IMU.
 bool isAsked(const Finding& finding, bool several) {
-  const std::string& quantity = finding.quantity;
+  const QuantityId id = finding.id;
   if (several)
     return finding.source == FindingSource::OtherImu &&
-           (quantity == "rotation" || quantity == "translation" || quantity == "time_offset");
-  return quantity == "accelerometer_bias" || quantity == "accelerometer_scale" ||
-         (quantity == "gyroscope_bias" && finding.source == FindingSource::Stops);
+           (id == QuantityId::Rotation || id == QuantityId::Translation || id == QuantityId::TimeOffset);
+  return id == QuantityId::AccelerometerBias ||
+         (id == QuantityId::AccelerometerScaleMisalignment && finding.quantity != kMisalignment) ||
+         (id == QuantityId::GyroscopeBias && finding.source == FindingSource::Stops);
 }
 
 void sayChanged(Maintenance& maintenance) {

@@ -217,12 +217,11 @@ class Repeat {
 
   // Time offsets are separate for each recording.
   static void leaveOffsetsOut(ComparedQuantities& compared) {
-    const char* const offset = quantityInfo(QuantityOwner::Camera, QuantityId::TimeOffset).name;
     ComparedQuantities kept;
     std::vector<Eigen::Index> numbers;
     for (std::size_t g = 0, shown = 0; g < compared.groups.size(); ++g) {
       ChangeGroup group = compared.groups[g];
-      const bool is_offset = group.tested && compared.quantities[shown].shown.quantity == offset;
+      const bool is_offset = group.tested && compared.quantities[shown].shown.id == QuantityId::TimeOffset;
       if (group.tested && !is_offset) kept.quantities.push_back(compared.quantities[shown]);
       if (group.tested) ++shown;
       if (is_offset) continue;
