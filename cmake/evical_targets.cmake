@@ -128,14 +128,16 @@ foreach(headers evical_headers evical_headers_fmt evical_headers_ceres)
   endif()
 endforeach()
 
-# evical_add_layer(NAME [FAST] SOURCES... [PUBLIC libs...] [PRIVATE libs...] [HEADERS precompiled]): one library per folder of core.
-# FAST: code that processes recordings.
+# evical_add_layer(NAME [FAST] [NOT_INSTALLED] SOURCES... [PUBLIC libs...] [PRIVATE libs...] [HEADERS precompiled]): one library
+# per folder of core. FAST: code that processes recordings.
 function(evical_add_layer name)
-  cmake_parse_arguments(ARG "FAST" "HEADERS" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "FAST;NOT_INSTALLED" "HEADERS" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(evical_${name} STATIC ${ARG_SOURCES})
   add_library(evical::${name} ALIAS evical_${name})
   set_target_properties(evical_${name} PROPERTIES EXPORT_NAME ${name})
-  set_property(GLOBAL APPEND PROPERTY EVICAL_LAYERS ${name})  # cmake/evical_install.cmake
+  if(NOT ARG_NOT_INSTALLED)
+    set_property(GLOBAL APPEND PROPERTY EVICAL_LAYERS ${name})  # cmake/evical_install.cmake
+  endif()
   target_include_directories(evical_${name} PUBLIC "$<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}>"
                                                    "$<INSTALL_INTERFACE:include>" "$<INSTALL_INTERFACE:include/evical>")
   target_link_libraries(evical_${name} PUBLIC Eigen3::Eigen Threads::Threads ${ARG_PUBLIC}

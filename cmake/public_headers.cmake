@@ -1,10 +1,12 @@
 # evical_public_headers(ROOT RESULT): core's headers that sources outside of their folder include, and the headers that these include;
 # relative to ROOT. The others are private to their folder: they may expose Ceres, OpenCV and the like, and are not installed.
+# Neither are those of simulations.
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.25)
 function(evical_public_headers root result)
   file(GLOB_RECURSE sources RELATIVE "${root}" "${root}/core/*.h" "${root}/core/*.cpp" "${root}/app/*.cpp" "${root}/ui/*.h"
        "${root}/ui/*.cpp" "${root}/examples/*.cpp")
+  list(FILTER sources EXCLUDE REGEX "^core/(synthetic|pipeline/simulate)/")
   set(open "")
   foreach(source IN LISTS sources)
     string(REGEX MATCH "^(core/[a-z_]+|app|ui|examples)" folder "${source}")
@@ -13,7 +15,7 @@ function(evical_public_headers root result)
     foreach(line IN LISTS lines)
       string(REGEX REPLACE "^#include \"([^\"]+)\".*" "\\1" header "${line}")
       list(APPEND included "${header}")
-      if(NOT header MATCHES "^${folder}/")
+      if(NOT header MATCHES "^(${folder}|core/synthetic|core/pipeline/simulate)/")
         list(APPEND open "${header}")
       endif()
     endforeach()
