@@ -23,11 +23,11 @@ int whyNoPlace(const std::filesystem::path& path) {
   return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) ? EEXIST : 0;
 }
 
-std::string contentOfFile(const std::filesystem::path& file, std::uintmax_t most_bytes) {
+std::string contentOfFile(const std::filesystem::path& file, std::uintmax_t max_bytes) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return {};
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  std::string bytes(error ? 0 : std::min(size, most_bytes), '\0');
+  std::string bytes(error ? 0 : std::min(size, max_bytes), '\0');
   std::ifstream stream(file, std::ios::binary);
   stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(stream.gcount()));

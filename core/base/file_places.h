@@ -26,7 +26,7 @@ inline bool pathExists(const std::filesystem::path& path) {
 
 // Content of a file, or its first bytes; empty if it cannot be read. A pipe or device has none: opening it could wait forever.
 std::string contentOfFile(const std::filesystem::path& file,
-                          std::uintmax_t most_bytes = std::numeric_limits<std::uintmax_t>::max());
+                          std::uintmax_t max_bytes = std::numeric_limits<std::uintmax_t>::max());
 
 // A folder that is created for results, and removed if it stays empty.
 

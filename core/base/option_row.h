@@ -68,7 +68,7 @@ class OptionConflict : public CalibrationError {
 //
 //   struct NormalFlowOptions {
 //     int plane_radius_px;
-//     double most_error_s;
+//     double max_error_s;
 //
 //     NormalFlowOptions();  // the defaults
 //     constexpr explicit NormalFlowOptions(NoDefaults) {}

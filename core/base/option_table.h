@@ -211,7 +211,7 @@ class OptionTable {
   // Name without group and "tuning."; null if there is no such option.
   const OptionRow* find(std::string_view name) const;
 
-  // `group` is the prefix of names here and in messages ("grid" gives "grid.least_circles"), followed by
+  // `group` is the prefix of names here and in messages ("grid" gives "grid.min_circles"), followed by
   // "tuning." for tuning options; may be empty.
   std::vector<OptionRow> rows(const Options& options, const std::string& group) const;
 

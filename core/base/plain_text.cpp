@@ -18,7 +18,7 @@ struct Character {
 // The first character of a text that is not empty.
 Character firstCharacter(std::string_view text) {
   constexpr char32_t kLast = 0x10FFFF, kSurrogates = 0xD800, kAfterSurrogates = 0xE000;
-  constexpr char32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};  // by the number of bytes
+  constexpr char32_t kMin[] = {0, 0, 0x80, 0x800, 0x10000};  // by the number of bytes
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return {1, byte(0)};
   const std::size_t bytes = byte(0) >> 5 == 0x6 ? 2 : byte(0) >> 4 == 0xE ? 3 : byte(0) >> 3 == 0x1E ? 4 : 0;
@@ -28,7 +28,7 @@ Character firstCharacter(std::string_view text) {
     if (byte(i) >> 6 != 0x2) return {};
     code = code << 6 | (byte(i) & 0x3F);
   }
-  if (code < kLeast[bytes] || code > kLast || (code >= kSurrogates && code < kAfterSurrogates)) return {};
+  if (code < kMin[bytes] || code > kLast || (code >= kSurrogates && code < kAfterSurrogates)) return {};
   return {bytes, code};
 }
 

@@ -130,13 +130,13 @@ void RunTrace::sample() {
 
 // A new thread has begun since the last sample. A thread that waits for a processor counts as working.
 void RunTrace::lookAt(int thread_id, double spent_s, double now_s) {
-  constexpr double kLeastShare = 0.02;
+  constexpr double kMinShare = 0.02;
   const auto [found, is_new] = threads_.try_emplace(thread_id);
   Thread& thread = found->second;
   if (is_new) thread.row = freeRow();
   thread.seen = true;
   const double worked_s = spent_s - std::exchange(thread.computing_s, spent_s);
-  if (worked_s < kLeastShare * (now_s - looked_s_)) {
+  if (worked_s < kMinShare * (now_s - looked_s_)) {
     thread.work = -1;
     return;
   }

@@ -83,11 +83,11 @@ bool hasTab(const std::string& text, int line) {
 
 // yaml-cpp needs half a kilobyte and some microseconds for each value. Each one has a sign before or after it.
 void requireFewValues(const std::string& text, const std::string& file) {
-  constexpr std::ptrdiff_t kMost = 200'000;  // a correlation of 400 numbers has fewer
+  constexpr std::ptrdiff_t kMax = 200'000;  // a correlation of 400 numbers has fewer
   const auto values =
       std::count_if(text.begin(), text.end(), [](char c) { return c == ',' || c == '\n' || c == '['; });
-  if (values > kMost)
-    throw badInput(file, fmt::format("has more than {} values, too many for a YAML file", kMost),
+  if (values > kMax)
+    throw badInput(file, fmt::format("has more than {} values, too many for a YAML file", kMax),
                    "Check that it is the right file");
 }
 

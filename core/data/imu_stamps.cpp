@@ -219,12 +219,12 @@ std::vector<double> sampleNumbers(const Times& times_ns, const StampSteps& steps
 
 // Adds samples that are lost without a gap in the stamps: from there on, all are later by a period. Means of some steps before
 // and after average the rounding.
-void addLost(const Times& times_ns, std::int64_t step_ns, double least_loss, std::vector<double>& numbers) {
-  constexpr double kFewest = 16.0, kLeast = 1.5, kNoise_medians = 6.0;
+void addLost(const Times& times_ns, std::int64_t step_ns, double min_loss, std::vector<double>& numbers) {
+  constexpr double kFewest = 16.0, kMin = 1.5, kNoise_medians = 6.0;
   const std::size_t size = times_ns.size();
   const double mean_ns = static_cast<double>(times_ns.back() - times_ns.front()) / numbers.back();
   const double per_step = static_cast<double>(step_ns) / mean_ns;
-  if (per_step < kLeast) return;  // a loss is a gap, or looks like a beat
+  if (per_step < kMin) return;  // a loss is a gap, or looks like a beat
   const auto width = static_cast<std::size_t>(std::llround(std::ceil(kFewest / per_step) * per_step));
   if (width < 2 || size < 4 * width) return;
   std::vector<double> stamp_sums{0.0}, number_sums{0.0};
@@ -244,12 +244,12 @@ void addLost(const Times& times_ns, std::int64_t step_ns, double least_loss, std
     late[i] = rise(stamp_sums, i) / period_ns - rise(number_sums, i);
     errors.push_back(std::abs(late[i]));
   }
-  if (!(period_ns > 0.0) || kNoise_medians * medianOf(std::move(errors)) > least_loss) return;
+  if (!(period_ns > 0.0) || kNoise_medians * medianOf(std::move(errors)) > min_loss) return;
   double lost = 0.0;
   std::size_t next = width;
   for (std::size_t i = 0; i < size; ++i) {
     const auto around = late.begin() + static_cast<std::ptrdiff_t>(i);
-    if (i >= next && late[i] >= least_loss && i + width <= size &&
+    if (i >= next && late[i] >= min_loss && i + width <= size &&
         late[i] >= *std::max_element(around, around + static_cast<std::ptrdiff_t>(width))) {
       lost += std::round(late[i]);
       next = i + width;

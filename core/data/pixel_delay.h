@@ -20,8 +20,8 @@ inline bool holdsPixelDelay(std::span<const CameraKind> cameras, std::size_t cam
 // Variance of such an offset without the delay, if the delay is the same every time; at least a tenth of the
 // variance, since the delay is uncertain.
 inline double withoutPixelDelay_s2(double variance_s2, double delay_s) {
-  constexpr double kLeast = 0.1;
-  return std::max(variance_s2 - delay_s * delay_s, kLeast * variance_s2);
+  constexpr double kMin = 0.1;
+  return std::max(variance_s2 - delay_s * delay_s, kMin * variance_s2);
 }
 
 }  // namespace evical

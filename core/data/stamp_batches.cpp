@@ -26,7 +26,7 @@ std::optional<StampBatches> findStampBatches(std::span<const std::int64_t> times
   // Batches of 5 that were stamped on arrival displaced circles by 220 times their noise. Batches of up to
   // 200 are detected, if gaps of ten periods cover half of the time or more; fewer gaps are lost samples.
   // Chosen far from jitter, not measured.
-  constexpr double kGap_periods = 10.0, kLeastTime = 0.5;
+  constexpr double kGap_periods = 10.0, kMinTime = 0.5;
   constexpr std::size_t kLargestBatch = 200;
   const double period_s = medianOf(intervals_s);
   std::size_t gaps = 0;
@@ -37,7 +37,7 @@ std::optional<StampBatches> findStampBatches(std::span<const std::int64_t> times
     in_gaps_s += interval_s;
   }
   const double whole_s = secondsSince(times_ns.front(), times_ns.back());
-  if (gaps == 0 || gaps * kLargestBatch < intervals_s.size() || in_gaps_s < kLeastTime * whole_s)
+  if (gaps == 0 || gaps * kLargestBatch < intervals_s.size() || in_gaps_s < kMinTime * whole_s)
     return std::nullopt;
   return StampBatches{times_ns.size() / gaps, period_s, in_gaps_s / static_cast<double>(gaps)};
 }

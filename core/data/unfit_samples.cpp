@@ -20,11 +20,11 @@ constexpr double kFullScale_rad_s = 2.0, kFullScale_m_s2 = 15.0;
 constexpr int kRunsOfLimit = 3, kLongRunOfLimit_samples = 16;
 // Largest share of spikes among samples: a larger share is a property of the sensor (repeated values, low
 // resolution).
-constexpr double kMostSpikes = 0.02;
+constexpr double kMaxSpikes = 0.02;
 // Threshold in medians of the interpolation errors: ten sigmas of a normal distribution.
 constexpr double kSpike_medians = 15.0;
 constexpr std::ptrdiff_t kNeighbours = 16;  // on either side
-constexpr int kMostRounds = 8;
+constexpr int kMaxRounds = 8;
 
 // The extreme at which the axis stays for several samples, which no motion causes; nullopt if there is none.
 std::optional<double> limitAt(std::span<const ImuSample> samples, const ImuAxis& axis, double extreme) {
@@ -66,13 +66,13 @@ class SpikeSearch {
       if (values_[i] != values_[i - 1]) steps.push_back(std::abs(values_[i] - values_[i - 1]));
     }
     const double resolution = steps.empty() ? 0.0 : *std::min_element(steps.begin(), steps.end());
-    least_ = kSpike_medians * std::max(medianOf(errors_), resolution);
+    min_ = kSpike_medians * std::max(medianOf(errors_), resolution);
   }
 
   std::vector<std::size_t> find() {
     std::vector<std::size_t> found;
-    const auto most = static_cast<std::size_t>(kMostSpikes * static_cast<double>(values_.size()));
-    for (int round = 0; round < kMostRounds; ++round) {
+    const auto most = static_cast<std::size_t>(kMaxSpikes * static_cast<double>(values_.size()));
+    for (int round = 0; round < kMaxRounds; ++round) {
       const std::vector<std::ptrdiff_t> worst = worstOfEachPlace();
       if (worst.empty()) break;
       for (const std::ptrdiff_t i : worst) {
@@ -99,7 +99,7 @@ class SpikeSearch {
 
   bool standsOut(std::ptrdiff_t i) const {
     const double error = errors_[static_cast<std::size_t>(i)];
-    if (!(error > least_)) return false;
+    if (!(error > min_)) return false;
     const auto first = errors_.begin() + std::max<std::ptrdiff_t>(i - kNeighbours, 0);
     const auto last = errors_.begin() + std::min(i + kNeighbours + 1, size());
     return error > kSpike_medians * medianOf(std::vector<double>(first, last));
@@ -123,7 +123,7 @@ class SpikeSearch {
 
   std::vector<double> values_, errors_;
   const std::vector<bool>& joined_;
-  double least_ = 0.0;
+  double min_ = 0.0;
 };
 
 // True for each sample if the two samples on either side have no gap between them; across gaps, no cubic is

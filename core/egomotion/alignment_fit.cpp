@@ -116,7 +116,7 @@ bool AlignmentFit::solve(AlignmentState& state) {
 namespace {
 
 constexpr double kStep_s = 0.005;
-constexpr std::size_t kMostPeaks = 4;
+constexpr std::size_t kMaxPeaks = 4;
 
 struct Correlation {
   double offset_s = 0.0, value = -1.0;
@@ -126,7 +126,7 @@ struct Correlation {
 Correlation correlationAt(double offset_s, const std::vector<const WindowMotion*>& windows,
                           const SummedRates& rates, const AlignmentState& start,
                           const Eigen::Matrix3d& imu_from_measured) {
-  constexpr double kLeastShare = 0.5;
+  constexpr double kMinShare = 0.5;
   double n = 0.0, a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
   for (const WindowMotion* window : windows) {
     if (!rates.covers(window->begin_s + offset_s, window->end_s + offset_s)) continue;
@@ -140,7 +140,7 @@ Correlation correlationAt(double offset_s, const std::vector<const WindowMotion*
     bb += imu * imu;
     ab += camera * imu;
   }
-  if (n < kLeastShare * static_cast<double>(windows.size()) || n < 3.0) return {offset_s, -1.0};
+  if (n < kMinShare * static_cast<double>(windows.size()) || n < 3.0) return {offset_s, -1.0};
   const double variance = (aa - a * a / n) * (bb - b * b / n);
   return {offset_s, variance > 0.0 ? (ab - a * b / n) / std::sqrt(variance) : -1.0};
 }
@@ -175,7 +175,7 @@ std::vector<AlignmentState> alignmentStarts(const std::vector<const WindowMotion
   }
   std::sort(peaks.begin(), peaks.end(),
             [](const Correlation& a, const Correlation& b) { return a.value > b.value; });
-  peaks.resize(std::min(peaks.size(), kMostPeaks));
+  peaks.resize(std::min(peaks.size(), kMaxPeaks));
   for (const Correlation& peak : peaks) {
     AlignmentState state = start;
     state.time_offset_s = peak.offset_s;

@@ -55,7 +55,7 @@ WindowMotion estimateWindowMotion(std::span<const EdgeSlope> slopes, const LensR
   out.end_s = out.begin_s + options.window_s;
   std::vector<EdgeRow> rows = edgeRows(slopes, lens, time.begin_ns, options);
   out.slopes = rows.size();
-  if (static_cast<int>(rows.size()) < options.least_slopes) return out;
+  if (static_cast<int>(rows.size()) < options.min_slopes) return out;
   WindowFit fit(std::move(rows), options);
   if (!fit.start(WindowUnknowns::Rotation)) return out;
   fit.refine();
@@ -69,12 +69,12 @@ WindowMotion estimateWindowMotion(std::span<const EdgeSlope> slopes, const LensR
   out.rate_rad_s = fit.state().rate_rad_s;
   out.covariance = fit.covariance(options.shared_slopes).topLeftCorner<3, 3>();
   weighParts(fit, options.window_s, out);
-  const double least_sigma_rad_s = std::sqrt(std::max(0.0, out.covariance.diagonal().minCoeff()));
-  if (medianSpeed_px_s(fit, lens.focalLength_px()) < options.least_speed_px_s) {
+  const double min_sigma_rad_s = std::sqrt(std::max(0.0, out.covariance.diagonal().minCoeff()));
+  if (medianSpeed_px_s(fit, lens.focalLength_px()) < options.min_speed_px_s) {
     out.use = WindowUse::HardlyMoving;
-  } else if (out.inliers < options.least_inliers) {
+  } else if (out.inliers < options.min_inliers) {
     out.use = WindowUse::NotExplained;
-  } else if (!(least_sigma_rad_s < options.largest_sigma_rad_s) || !out.covariance.allFinite()) {
+  } else if (!(min_sigma_rad_s < options.max_sigma_rad_s) || !out.covariance.allFinite()) {
     out.use = WindowUse::Uncertain;
   } else {
     out.use = WindowUse::Used;

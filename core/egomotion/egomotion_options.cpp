@@ -8,9 +8,9 @@ namespace {
 constexpr std::tuple kEgomotionFields{
     Field{"window_s", &EgomotionOptions::window_s, 0.04, within(0.005, 0.5), "s",
           "Length of the event windows in which the camera's motion is estimated."},
-    Field{"least_slopes", &EgomotionOptions::least_slopes, 200, within(20, 1000000), "",
+    Field{"min_slopes", &EgomotionOptions::min_slopes, 200, within(20, 1000000), "",
           "Smallest number of edges with a speed in an event window."},
-    Field{"most_slopes", &EgomotionOptions::most_slopes, 2000, within(20, 1000000), "",
+    Field{"max_slopes", &EgomotionOptions::max_slopes, 2000, within(20, 1000000), "",
           "Largest number of edges in an event window's fit; of more, every second, third, ... is used."},
     Field{"time_noise_s", &EgomotionOptions::time_noise_s, 3e-4, within(0.0, 0.1), "s",
           "Sigma of the time at which a fast edge passes a pixel."},
@@ -24,11 +24,11 @@ constexpr std::tuple kEgomotionFields{
           "Sigma of the logarithm of patches' depths, about their mean."},
     Field{"depth_error", &EgomotionOptions::depth_error, 0.8, within(0.0, 3.0), "",
           "Sigma of the logarithm of depths within a patch; reduces the weight of translational motion."},
-    Field{"least_inliers", &EgomotionOptions::least_inliers, 0.5, within(0.1, 1.0), "",
+    Field{"min_inliers", &EgomotionOptions::min_inliers, 0.5, within(0.1, 1.0), "",
           "Smallest share of an event window's edges that its motion explains."},
-    Field{"least_speed_px_s", &EgomotionOptions::least_speed_px_s, 5.0, within(0.1, 1e4), "px/s",
+    Field{"min_speed_px_s", &EgomotionOptions::min_speed_px_s, 5.0, within(0.1, 1e4), "px/s",
           "Smallest median speed of the image in a used event window."},
-    Field{"largest_sigma_rad_s", &EgomotionOptions::largest_sigma_rad_s, 0.5, within(1e-4, 100.0), "rad/s",
+    Field{"max_sigma_rad_s", &EgomotionOptions::max_sigma_rad_s, 0.5, within(1e-4, 100.0), "rad/s",
           "Largest sigma of the rotation rate in the best direction; other event windows are excluded."},
     Field{"kept_windows", &EgomotionOptions::kept_windows, 1500, within(50, 1000000), "",
           "Largest number of event windows in the joint fit; of more, every second, fourth, ... is used."},
@@ -53,7 +53,7 @@ constexpr std::tuple kEgomotionFields{
           "Share of the change without translation in the model that is added to the sigmas."},
     Field{"block_s", &EgomotionOptions::block_s, 3.0, within(0.1, 100.0), "s",
           "Length of the blocks of the recording whose scatter determines the sigmas."},
-    Field{"least_blocks", &EgomotionOptions::least_blocks, 6, within(3, 1000), "",
+    Field{"min_blocks", &EgomotionOptions::min_blocks, 6, within(3, 1000), "",
           "Smallest number of blocks with event windows for a result."},
     Field{"search_s", &EgomotionOptions::search_s, 1.0, within(0.0, 60.0), "s",
           "Search range of the time offset, to either side of the old one."}};
@@ -65,7 +65,7 @@ EgomotionOptions::EgomotionOptions() : EgomotionOptions(kEgomotionDefaults) {}
 
 const OptionTable<EgomotionOptions>& EgomotionOptions::table() {
   static const OptionTable<EgomotionOptions> table(
-      kEgomotionFields, Ordered{&EgomotionOptions::least_slopes, &EgomotionOptions::most_slopes});
+      kEgomotionFields, Ordered{&EgomotionOptions::min_slopes, &EgomotionOptions::max_slopes});
   return table;
 }
 

@@ -7,17 +7,17 @@ namespace evical {
 
 struct EgomotionOptions {
   double window_s;
-  int least_slopes;
-  int most_slopes;
+  int min_slopes;
+  int max_slopes;
   double time_noise_s;
   double place_noise_px;
   int depth_columns;
   int depth_rows;
   double depth_spread;
   double depth_error;
-  double least_inliers;
-  double least_speed_px_s;
-  double largest_sigma_rad_s;
+  double min_inliers;
+  double min_speed_px_s;
+  double max_sigma_rad_s;
   int kept_windows;
   int kept_slopes;
   double velocity_weight;
@@ -27,7 +27,7 @@ struct EgomotionOptions {
   double depths_left;
   double translation_left;
   double block_s;
-  int least_blocks;
+  int min_blocks;
   double search_s;
 
   EgomotionOptions();  // the defaults

@@ -22,8 +22,8 @@ SummedRates::SummedRates(std::span<const ImuSample> samples, std::int64_t start_
     rates_rad_s_.push_back(sample.angular_rate_rad_s);
     sums_rad_.push_back(sum);
   }
-  constexpr double kGapSteps = 5.0, kLeastGap_s = 0.01;
-  const double gap_s = std::max(kLeastGap_s, kGapSteps * medianOf(steps_s));
+  constexpr double kGapSteps = 5.0, kMinGap_s = 0.01;
+  const double gap_s = std::max(kMinGap_s, kGapSteps * medianOf(steps_s));
   for (std::size_t k = 1; k < times_s_.size(); ++k) {
     if (times_s_[k] - times_s_[k - 1] > gap_s) gaps_s_.push_back(times_s_[k - 1]);
   }

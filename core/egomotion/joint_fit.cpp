@@ -93,9 +93,9 @@ void JointFit::expectVelocities() {
   if (still_) return;
   double squares = 0.0;
   for (const WindowState& state : states_) squares += state.velocity_1_s.squaredNorm() / 3.0;
-  constexpr double kLeast = 1e-8;
+  constexpr double kMin = 1e-8;
   const auto windows = static_cast<double>(std::max<std::size_t>(1, states_.size()));
-  velocity_information_ = options_.velocity_weight / (squares / windows + kLeast);
+  velocity_information_ = options_.velocity_weight / (squares / windows + kMin);
 }
 
 // Sum of all windows' parts, and the weak prior of lever_left.

@@ -69,7 +69,7 @@ std::optional<JointMatrix> blockCovariance(const JointFit& fit, const EgomotionO
     sum.right += part.right;
   }
   blocks = static_cast<int>(sums.size());
-  if (blocks < options.least_blocks) return std::nullopt;
+  if (blocks < options.min_blocks) return std::nullopt;
   std::vector<JointVector> moves;
   JointVector mean = JointVector::Zero();
   for (const auto& [time, block] : sums) {

@@ -30,7 +30,7 @@ std::vector<EdgeRow> edgeRows(std::span<const EdgeSlope> slopes, const LensRays&
   std::vector<EdgeRow> rows;
   rows.reserve(slopes.size());
   const Resolution size = lens.resolution_px();
-  const std::size_t step = 1 + slopes.size() / static_cast<std::size_t>(options.most_slopes);
+  const std::size_t step = 1 + slopes.size() / static_cast<std::size_t>(options.max_slopes);
   for (std::size_t k = 0; k < slopes.size(); k += step) {
     const EdgeSlope& slope = slopes[k];
     const LensRays::Ray& ray = lens.at(slope.x_px, slope.y_px);
@@ -59,8 +59,8 @@ EdgeResidual edgeResidual(const EdgeRow& row, const Eigen::Vector3d& rate_rad_s,
   out.translational = row.by_translation * velocity_1_s;
   const Eigen::Vector2d flow = row.by_rotation * (row.known_rate_rad_s + rate_rad_s) + out.translational;
   const Eigen::Vector2d noisy = row.variance * flow;
-  constexpr double kLeastVariance = 1e-12;
-  const double sigma = std::sqrt(flow.dot(noisy) + row.depth_variance + kLeastVariance);
+  constexpr double kMinVariance = 1e-12;
+  const double sigma = std::sqrt(flow.dot(noisy) + row.depth_variance + kMinVariance);
   out.error = row.slope.dot(flow) - 1.0;
   out.value = out.error / sigma;
   out.by_flow = row.slope / sigma - out.error / (sigma * sigma * sigma) * noisy;

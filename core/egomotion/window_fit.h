@@ -37,7 +37,7 @@ struct EdgeRow {
   Eigen::Vector3d known_rate_rad_s = Eigen::Vector3d::Zero();  // of the camera, in addition to the fitted one
 };
 
-// Every second, third ... slope if a window has more than options.most_slopes. Those outside the lens's view
+// Every second, third ... slope if a window has more than options.max_slopes. Those outside the lens's view
 // are omitted.
 std::vector<EdgeRow> edgeRows(std::span<const EdgeSlope> slopes, const LensRays& lens, std::int64_t begin_ns,
                               const EgomotionOptions& options);

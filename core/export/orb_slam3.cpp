@@ -12,7 +12,7 @@ namespace evical {
 namespace {
 
 constexpr const char* kOrbSlam3Program = "ORB-SLAM3";
-constexpr std::size_t kOrbSlam3MostCameras = 2;
+constexpr std::size_t kOrbSlam3MaxCameras = 2;
 
 // Keys that are not part of a calibration, but without which the program does not start (Settings.cc); reals
 // need a point.
@@ -47,7 +47,7 @@ std::string orbSlam3CameraText(const CameraIntrinsics& camera, std::size_t numbe
 // Both cameras of one kind: the settings have one Camera.type.
 std::vector<CameraIntrinsics> camerasOf(const Rig& rig, ExportNotes& notes) {
   std::vector<CameraIntrinsics> cameras;
-  for (std::size_t i = 0; i < std::min(rig.cameras.size(), kOrbSlam3MostCameras); ++i) {
+  for (std::size_t i = 0; i < std::min(rig.cameras.size(), kOrbSlam3MaxCameras); ++i) {
     const bool radtan = rig.cameras[0].intrinsics.model == CameraModel::PinholeRadtan;
     cameras.push_back(cameraFor(rig.cameras[i], {kOrbSlam3Program, radtan, true, !radtan}, notes));
     if (cameras[i].resolution_px != cameras[0].resolution_px)
@@ -86,7 +86,7 @@ std::string secondLensNote(const std::vector<CameraIntrinsics>& cameras) {
 ExportedFiles exportOrbSlam3(const NamedResult& result) {
   ExportedFiles exported;
   const Rig rig = rigOf(result);
-  noteLostCameras(rig, kOrbSlam3MostCameras, kOrbSlam3Program, exported.notes);
+  noteLostCameras(rig, kOrbSlam3MaxCameras, kOrbSlam3Program, exported.notes);
   const std::vector<CameraIntrinsics> cameras = camerasOf(rig, exported.notes);
   const bool stereo = cameras.size() > 1;
   std::string text =

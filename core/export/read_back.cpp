@@ -61,7 +61,7 @@ std::optional<LensFit> refitOf(const CameraIntrinsics& own, const CameraIntrinsi
 // undefined.
 double lensDifference_px(const CameraIntrinsics& own, const CameraIntrinsics& read) {
   constexpr int kColumns = 41, kRows = 31;
-  const double least_z =
+  const double min_z =
       isSphereModel(read.model) || read.model == own.model ? -1.0 : std::cos(85.0 * kRadPerDeg);
   double worst_px = 0.0;
   for (int row = 0; row < kRows; ++row)
@@ -69,7 +69,7 @@ double lensDifference_px(const CameraIntrinsics& own, const CameraIntrinsics& re
       const Eigen::Vector2d pixel((own.resolution_px.width_px - 1.0) * col / (kColumns - 1),
                                   (own.resolution_px.height_px - 1.0) * row / (kRows - 1));
       const auto ray = unprojectRay(own, pixel);
-      if (!ray || ray->z() < least_z) continue;
+      if (!ray || ray->z() < min_z) continue;
       const auto ours = project(own, *ray), theirs = project(read, *ray);
       if (!ours) continue;
       if (!theirs) return std::numeric_limits<double>::infinity();
@@ -83,8 +83,8 @@ class Comparison {
   Comparison(const NamedResult& result, const ReadBack& read) : rig_(rigOf(result)), read_(read) {
     findTurns();
     for (const ReadFile& file : read_.files) compareFile(file);
-    askForMissing(cameras_, rig_.cameras, read_.most_cameras, "camera");
-    askForMissing(imus_, rig_.imus, read_.most_imus, "IMU");
+    askForMissing(cameras_, rig_.cameras, read_.max_cameras, "camera");
+    askForMissing(imus_, rig_.imus, read_.max_imus, "IMU");
     difference_.cameras = cameras_.size();
     difference_.imus = imus_.size();
   }
@@ -161,8 +161,8 @@ class Comparison {
     const double off_px = lensDifference_px(own.intrinsics, read), rounding_px = kPixels * file.rounding;
     const std::optional<LensFit> refit = refitOf(own.intrinsics, read);
     raise(refit ? difference_.refitted_px : difference_.lens_px, off_px);
-    const double most_px = rounding_px + (refit ? refit->worst_px : 0.0);
-    if (!(off_px <= most_px))
+    const double max_px = rounding_px + (refit ? refit->worst_px : 0.0);
+    if (!(off_px <= max_px))
       problem(file, own.name,
               fmt::format("the lens differs by up to {:.3g} px{}", off_px,
                           refit ? fmt::format(", its refit by {:.3g} px", refit->worst_px) : ""));

@@ -128,9 +128,9 @@ DataSetCameras dataSetCameras(const Rig& rig, const char* program, ExportNotes& 
                               placeDataSetCamerasText("right event camera", placed.right_event),
                               placeDataSetCamerasText("left frame camera", placed.left_frame),
                               placeDataSetCamerasText("right frame camera", placed.right_frame)));
-  constexpr std::size_t kMostOfAKind = 2;
+  constexpr std::size_t kMaxOfAKind = 2;
   for (const Rig* const kind : {&events, &frames})
-    for (std::size_t i = kMostOfAKind; i < kind->cameras.size(); ++i)
+    for (std::size_t i = kMaxOfAKind; i < kind->cameras.size(); ++i)
       notes.push_back(
           fmt::format("{} has two cameras per kind: {} is left out", program, kind->cameras[i].name));
   return placed;

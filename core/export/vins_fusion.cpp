@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kVinsFusionProgram = "VINS-Fusion";
 constexpr KnownModels kVinsFusionModels{kVinsFusionProgram, true, false, true, false, false, true};
-constexpr std::size_t kVinsFusionMostCameras = 2;
+constexpr std::size_t kVinsFusionMaxCameras = 2;
 
 // Keys that are not part of a calibration: if they are missing, the program reads 0 and detects no features.
 constexpr const char* kVinsFusionOwnKeys =
@@ -58,7 +58,7 @@ std::string vinsFusionCameraFile(const Rig& rig, const RigCamera& camera, Export
 }
 
 std::string configuration(const Rig& rig, const RigImu& imu, ExportNotes& notes) {
-  const std::size_t count = std::min(rig.cameras.size(), kVinsFusionMostCameras);
+  const std::size_t count = std::min(rig.cameras.size(), kVinsFusionMaxCameras);
   const ImuNoise noise = statedNoise(imu, notes);
   std::string text =
       "%YAML:1.0\n---\n" +
@@ -97,11 +97,11 @@ ExportedFiles exportVinsFusion(const NamedResult& result) {
   const Rig rig = rigOf(result);
   const RigImu& imu = neededImu(rig, kVinsFusionProgram);
   noteLostImus(rig, kVinsFusionProgram, exported.notes);
-  noteLostCameras(rig, kVinsFusionMostCameras, kVinsFusionProgram, exported.notes);
+  noteLostCameras(rig, kVinsFusionMaxCameras, kVinsFusionProgram, exported.notes);
   noteLostOffsets(rig, kVinsFusionProgram, exported.notes);
   noteLostMapping(imu, kVinsFusionProgram, exported.notes);
   exported.files.push_back({"vins.yaml", configuration(rig, imu, exported.notes)});
-  for (std::size_t i = 0; i < std::min(rig.cameras.size(), kVinsFusionMostCameras); ++i)
+  for (std::size_t i = 0; i < std::min(rig.cameras.size(), kVinsFusionMaxCameras); ++i)
     exported.files.push_back(
         {rig.cameras[i].file_name + ".yaml", vinsFusionCameraFile(rig, rig.cameras[i], exported.notes)});
   return exported;

@@ -44,9 +44,9 @@ class JsonChecks {
   bool operator()(int depth, nlohmann::detail::parse_event_t event, const Json& parsed) {
     using Event = nlohmann::detail::parse_event_t;
     constexpr int kDeepest = 100;
-    constexpr std::size_t kMostValues = 1'000'000, kMostKeys = 1000;
+    constexpr std::size_t kMaxValues = 1'000'000, kMaxKeys = 1000;
     if (depth > kDeepest) refuse("is nested too deeply");
-    if (++values_ > kMostValues) refuse("has too many values");
+    if (++values_ > kMaxValues) refuse("has too many values");
     if (event == Event::object_start) keys_.emplace_back();
     if (event == Event::object_end) keys_.pop_back();
     if (event != Event::key) return true;
@@ -54,7 +54,7 @@ class JsonChecks {
     if (!is_new)
       refuse(fmt::format("{} occurs twice, first in line {}", first->first, first->second),
              "Remove one of them");
-    if (keys_.back().size() > kMostKeys) refuse("has too many keys in one object");
+    if (keys_.back().size() > kMaxKeys) refuse("has too many keys in one object");
     return true;
   }
 

@@ -78,8 +78,8 @@ std::vector<std::size_t> shapeOf(const std::string& text, const std::string& pla
        at = text.find_first_of("0123456789", at)) {
     std::size_t size = 0;
     const auto end = std::from_chars(text.data() + at, text.data() + text.size(), size);
-    constexpr std::size_t kMost = 100'000;  // limits the size that a file claims
-    if (end.ec != std::errc{} || size > kMost) throw npzArraysBroken(place, "is too large for a calibration");
+    constexpr std::size_t kMax = 100'000;  // limits the size that a file claims
+    if (end.ec != std::errc{} || size > kMax) throw npzArraysBroken(place, "is too large for a calibration");
     shape.push_back(size);
     at = static_cast<std::size_t>(end.ptr - text.data());
   }

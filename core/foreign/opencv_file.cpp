@@ -204,8 +204,8 @@ std::vector<double> OpencvNode::elements() const {
   if (type != "f" && type != "d" && whole == kWholeTypes.end())
     (*this)["dt"].fail("is not a type of single numbers: f, d, u, c, w, s or i");
   const OpencvNode data = (*this)["data"];
-  constexpr int kMost = 10'000;
-  if (rows < 1 || cols < 1 || rows > kMost || cols > kMost) fail("is not a matrix of numbers");
+  constexpr int kMax = 10'000;
+  if (rows < 1 || cols < 1 || rows > kMax || cols > kMax) fail("is not a matrix of numbers");
   const auto count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols);
   const bool single = count == 1 && data.value_->kind == Value::Kind::Number;  // in XML
   std::vector<double> values = single ? std::vector{data.number()} : data.numbers(count);

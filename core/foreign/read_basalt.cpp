@@ -129,7 +129,7 @@ ReadFile readBasaltFile(const std::filesystem::path& path) {
 
 ReadBack readBasalt(const std::filesystem::path& folder) {
   ReadBack read;
-  read.most_imus = 1;
+  read.max_imus = 1;
   read.files = {basaltFile(folder / "calibration.json")};
   return read;
 }
@@ -140,7 +140,7 @@ ReadBack readBasalt(const std::filesystem::path& folder) {
 ReadBack readTumVie(const std::filesystem::path& folder) {
   constexpr std::size_t kCameras = 4;
   ReadBack read;
-  read.most_imus = 1;
+  read.max_imus = 1;
   ReadFile file = basaltFile(folder / "camera-calibrationA.json");
   const JsonNode value = JsonNode::load(file.path)["value0"];
   const std::vector<JsonNode> names = value["camera_names"].items();
@@ -153,7 +153,7 @@ ReadBack readTumVie(const std::filesystem::path& folder) {
     if (file.cameras[i].lens->model != CameraModel::PinholeEquidistant)
       value["intrinsics"].items()[i]["camera_type"].fail("must be kb4");
   }
-  read.most_cameras = different.size();
+  read.max_cameras = different.size();
   read.files = {file};
   return read;
 }

@@ -58,7 +58,7 @@ inline constexpr double kFloatRounding = 6e-8;
 struct ReadBack {
   static constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
   std::vector<ReadFile> files = {};
-  std::size_t most_cameras = kAny, most_imus = kAny;  // that the program accepts
+  std::size_t max_cameras = kAny, max_imus = kAny;  // that the program accepts
 };
 
 }  // namespace evical

@@ -121,8 +121,8 @@ ReadBack readDsec(const std::filesystem::path& folder) {
   if (this_from_first[1] && this_from_first[2])
     checkPair(root, 1, 2, *this_from_first[2] * inverse(*this_from_first[1]));
   ReadBack read;
-  read.most_cameras = file.cameras.size();
-  read.most_imus = 0;
+  read.max_cameras = file.cameras.size();
+  read.max_imus = 0;
   read.files = {file};
   return read;
 }

@@ -135,7 +135,7 @@ ReadBack readDvProcessing(const std::filesystem::path& folder) {
   if (root.has("stereo"))
     for (const auto& [key, node] : root["stereo"].entries()) checkStereo(node, names);
   ReadBack read;
-  read.most_imus = 1;
+  read.max_imus = 1;
   read.files = {file};
   return read;
 }

@@ -61,8 +61,8 @@ ReadBack readEsvoPair(const std::filesystem::path& folder, bool with_imu) {
   pair.cameras[0].frame_from_camera = RigidTransform{};
   pair.cameras[1].frame_from_camera = inverse(right_from_left);
   ReadBack read;
-  read.most_cameras = 2;
-  read.most_imus = 0;
+  read.max_cameras = 2;
+  read.max_imus = 0;
   read.files = {pair};
   if (with_imu) {
     ReadCamera camera;

@@ -108,7 +108,7 @@ ReadFile evimo2CameraOf(const std::filesystem::path& folder) {
 
 ReadBack readEvimo2(const std::filesystem::path& folder) {
   ReadBack read;
-  read.most_imus = 0;
+  read.max_imus = 0;
   std::error_code problem;
   std::vector<std::filesystem::path> cameras;
   for (const auto& entry : std::filesystem::directory_iterator(folder, problem))

@@ -89,8 +89,8 @@ ReadBack readM3ed(const std::filesystem::path& folder) {
     throw badInput(fmt::format("{}: {}{}", path.string(), kCameraGroups.front(), kPlace),
                    "must be the identity");
   ReadBack read;
-  read.most_cameras = file.cameras.size();
-  read.most_imus = 1;
+  read.max_cameras = file.cameras.size();
+  read.max_imus = 1;
   read.files = {file};
   if (!groups.has("/ovc/imu")) return read;
   ReadFile inertial{path};

@@ -30,7 +30,7 @@ ReadFile readMetavisionCamera(const std::filesystem::path& path, const std::stri
 ReadBack readMetavision(const std::filesystem::path& folder) {
   const std::string kFile = "intrinsics.json";
   ReadBack read;
-  read.most_imus = 0;
+  read.max_imus = 0;
   if (pathExists(folder / kFile)) read.files.push_back(readMetavisionCamera(folder / kFile, ""));
   for (const std::filesystem::path& below : filesLike(folder, "", ""))
     if (pathExists(below / kFile))

@@ -69,7 +69,7 @@ ReadFile readOpenvinsImu(const std::filesystem::path& path) {
 
 ReadBack readOpenVins(const std::filesystem::path& folder) {
   ReadBack read;
-  read.most_imus = 1;
+  read.max_imus = 1;
   read.files = {readOpenvinsChain(folder / "kalibr_imucam_chain.yaml"),
                 readOpenvinsImu(folder / "kalibr_imu_chain.yaml")};
   return read;

@@ -110,8 +110,8 @@ ReadBack readOrbSlam3(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "settings.yaml";
   const OpencvFile file(path);
   ReadBack read;
-  read.most_cameras = 2;
-  read.most_imus = 1;
+  read.max_cameras = 2;
+  read.max_imus = 1;
   ReadFile settings{path};
   settings.rounding = kFloatRounding;
   if (file["File.version"].text() != "1.0")

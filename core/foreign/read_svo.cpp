@@ -109,7 +109,7 @@ ReadBack readSvo(const std::filesystem::path& folder) {
   file.imus = {imu};
   file.gravity_m_s2 = node["g"].real();
   ReadBack read;
-  read.most_imus = 1;
+  read.max_imus = 1;
   read.files = {file};
   return read;
 }
@@ -149,7 +149,7 @@ ReadBack readUltimateSlam(const std::filesystem::path& folder) {
   file.imus = {imu};
   file.gravity_m_s2 = flags["vio_ceres_gravity"];
   ReadBack read;
-  read.most_imus = 1;
+  read.max_imus = 1;
   read.files = {rig, file};
   return read;
 }

@@ -89,8 +89,8 @@ ReadFile readVinsCameraFile(const std::filesystem::path& path) {
 
 ReadBack readVinsFusion(const std::filesystem::path& folder) {
   ReadBack read;
-  read.most_cameras = 2;
-  read.most_imus = 1;
+  read.max_cameras = 2;
+  read.max_imus = 1;
   const std::filesystem::path path = folder / "vins.yaml";
   const OpencvFile file(path);
   askVinsFusionForOwnKeys(file);

@@ -130,9 +130,9 @@ class XmlParser {
 
   XmlElement element(const std::string& above, int depth) {
     constexpr int kDeepest = 100;
-    constexpr int kMostElements = 100'000;
+    constexpr int kMaxElements = 100'000;
     if (depth > kDeepest) refuse("is nested too deeply");
-    if (++elements_ > kMostElements) refuse("has too many elements");
+    if (++elements_ > kMaxElements) refuse("has too many elements");
     expect("<");
     XmlElement element;
     element.name = word();

@@ -162,9 +162,9 @@ Hdf5Dataset datasetOf(hid_t dataset, const std::string& path, const std::string&
   if (H5Pget_layout(*creation) == H5D_VIRTUAL || H5Pget_external_count(*creation) > 0)
     throw badInput(place, "is kept in another file, which is not opened");
   if (H5Pget_nfilters(*creation) > 0) throw badInput(place, "is packed, which Evical does not do");
-  constexpr int kMostDimensions = 8;
+  constexpr int kMaxDimensions = 8;
   const int dimensions = H5Sget_simple_extent_ndims(*space);
-  if (dimensions < 0 || dimensions > kMostDimensions) throw badInput(place, "has no shape");
+  if (dimensions < 0 || dimensions > kMaxDimensions) throw badInput(place, "has no shape");
   std::vector<hsize_t> shape(static_cast<std::size_t>(dimensions));
   H5Sget_simple_extent_dims(*space, shape.data(), nullptr);
   const std::size_t size = sizeOf(dataset, *type, shape, place);

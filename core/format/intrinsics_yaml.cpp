@@ -25,7 +25,7 @@ namespace evical {
 namespace {
 
 // Larger than any expected sensor, and small enough that width * height fits an int.
-constexpr int kMostPixels = 30000;
+constexpr int kMaxPixels = 30000;
 
 Eigen::Vector2d pair(const YamlNode& node) {
   const std::vector<double> values = node.reals(2);
@@ -35,7 +35,7 @@ Eigen::Vector2d pair(const YamlNode& node) {
 Resolution resolution(const YamlNode& node) {
   const std::vector<YamlNode> items = node.items();
   if (items.size() != 2) throw node.error("must be [width, height]");
-  return {items[0].integer(1, kMostPixels), items[1].integer(1, kMostPixels)};
+  return {items[0].integer(1, kMaxPixels), items[1].integer(1, kMaxPixels)};
 }
 
 void setDistortion(const YamlNode& node, CameraIntrinsics& camera) {
@@ -166,7 +166,7 @@ void refusePartOfImage(const YamlNode& map, const Resolution& size_px) {
   constexpr const char* kAdvice = "Give the lens of the recorded pictures";
   for (const char* const key : {"binning_x", "binning_y"}) {
     const auto binning = map.find(key);
-    const int pixels = binning ? binning->integer(0, kMostPixels) : 0;
+    const int pixels = binning ? binning->integer(0, kMaxPixels) : 0;
     if (pixels > 1)
       throw binning->error(fmt::format("is {}: the pictures have fewer pixels than the lens is for", pixels),
                            kAdvice);
@@ -175,7 +175,7 @@ void refusePartOfImage(const YamlNode& map, const Resolution& size_px) {
   if (!roi || !roi->isMap()) return;
   const auto numberOf = [&](const char* key) {
     const auto number = roi->find(key);
-    return number ? number->integer(0, kMostPixels) : 0;
+    return number ? number->integer(0, kMaxPixels) : 0;
   };
   const int width_px = numberOf("width"), height_px = numberOf("height");
   if (numberOf("x_offset") > 0 || numberOf("y_offset") > 0 ||
@@ -192,8 +192,8 @@ CameraIntrinsics readCameraInfo(const YamlNode& map) {
   setMatrix(matrix.reals(9), matrix.place(), camera);
   setOpenCvDistortion(distortion, camera);
   const char* prefix = parsers ? "image_" : "";
-  camera.resolution_px = {map[fmt::format("{}width", prefix)].integer(1, kMostPixels),
-                          map[fmt::format("{}height", prefix)].integer(1, kMostPixels)};
+  camera.resolution_px = {map[fmt::format("{}width", prefix)].integer(1, kMaxPixels),
+                          map[fmt::format("{}height", prefix)].integer(1, kMaxPixels)};
   refusePartOfImage(map, camera.resolution_px);
   return camera;
 }
@@ -213,7 +213,7 @@ CameraIntrinsics readOak(const YamlNode& map) {
     for (const double each : row.reals(3)) matrix.push_back(each);
   setMatrix(matrix, map["intrinsicMatrix"].place(), camera);
   setOpenCvDistortion(map["distortionCoeff"], camera);
-  camera.resolution_px = {map["width"].integer(1, kMostPixels), map["height"].integer(1, kMostPixels)};
+  camera.resolution_px = {map["width"].integer(1, kMaxPixels), map["height"].integer(1, kMaxPixels)};
   return camera;
 }
 
@@ -223,8 +223,8 @@ CameraIntrinsics readEkalibr(const YamlNode& map) {
   camera.model =
       static_cast<CameraModel>(map["polymorphic_name"].choice({"pinhole_brown_t2", "pinhole_fisheye"}));
   const YamlNode data = map["ptr_wrapper"]["data"];
-  camera.resolution_px = {data["img_width"].integer(1, kMostPixels),
-                          data["img_height"].integer(1, kMostPixels)};
+  camera.resolution_px = {data["img_width"].integer(1, kMaxPixels),
+                          data["img_height"].integer(1, kMaxPixels)};
   camera.focal_length_px = pair(data["focal_length"]);
   camera.principal_point_px = pair(data["principal_point"]);
   if (camera.model == CameraModel::PinholeEquidistant) {
@@ -266,7 +266,7 @@ std::vector<std::pair<std::string, YamlNode>> named(const YamlNode& map,
 
 // Without a resolution, the recording gives it.
 CameraIntrinsics withAnySize(CameraIntrinsics camera) {
-  if (!camera.resolution_px.known()) camera.resolution_px = {kMostPixels, kMostPixels};
+  if (!camera.resolution_px.known()) camera.resolution_px = {kMaxPixels, kMaxPixels};
   return camera;
 }
 
@@ -411,7 +411,7 @@ namespace {
 // little. Real lenses are far within these limits, also badly calibrated ones.
 void refuseImplausibleDistortion(const CameraIntrinsics& camera, const Eigen::Vector2d& border_px,
                                  const std::string& place) {
-  constexpr double kStep_rad = 0.01, kWidest_rad = 1.4, kWeakest = 0.1, kStrongest = 4.0, kMostOfTheWay = 0.6;
+  constexpr double kStep_rad = 0.01, kWidest_rad = 1.4, kWeakest = 0.1, kStrongest = 4.0, kMaxOfTheWay = 0.6;
   constexpr const char* kAdvice = "Check the model, the order and the unit of the coefficients";
   const Eigen::Vector2d way_px = border_px - camera.principal_point_px;
   const Eigen::Vector2d away = way_px.cwiseQuotient(camera.focal_length_px).normalized();
@@ -422,7 +422,7 @@ void refuseImplausibleDistortion(const CameraIntrinsics& camera, const Eigen::Ve
     const auto pixel = project(camera, {aside.x(), aside.y(), std::cos(angle_rad)});
     const double share = (last_px - camera.principal_point_px).norm() / way_px.norm();
     if (share >= 1.0) return;
-    if (!pixel && share < kMostOfTheWay)
+    if (!pixel && share < kMaxOfTheWay)
       throw badInput(
           place,
           fmt::format("the distortion folds the image at {:.0f} deg off the axis", angle_rad * kDegPerRad),
@@ -448,10 +448,10 @@ void refuseImplausibleDistortion(const CameraIntrinsics& camera, const Eigen::Ve
 
 void validateImported(const CameraIntrinsics& camera, const std::string& place) {
   validate(withAnySize(camera), place);
-  constexpr double kLeastFocal_px = 5.0, kMostFocal_px = 1e7;  // a telescope has less
+  constexpr double kMinFocal_px = 5.0, kMaxFocal_px = 1e7;  // a telescope has less
   const Eigen::Vector2d &focal = camera.focal_length_px, &centre = camera.principal_point_px;
   for (const double each : {focal.x(), focal.y()})
-    if (!(each >= kLeastFocal_px && each <= kMostFocal_px))
+    if (!(each >= kMinFocal_px && each <= kMaxFocal_px))
       throw badInput(place, fmt::format("the focal length of {:.3g} px is implausible", each),
                      "Give it in pixels");
   const Resolution size = camera.resolution_px;

@@ -46,9 +46,9 @@ std::optional<Blink> findBlink(std::span<const float> balance, const BlinkOption
   // The peak must follow a valley, which a slow change of everything does not have; multiples of the period
   // have equal peaks.
   constexpr double kValley = 0.3, kNearlyHighest = 0.8;
-  const auto longest = static_cast<std::size_t>(1.0 / (options.least_hz * kBin_s)) + 2;
+  const auto longest = static_cast<std::size_t>(1.0 / (options.min_hz * kBin_s)) + 2;
   const std::size_t lags = std::min(longest, balance.size() / 2 + 1);
-  const auto shortest = std::max<std::size_t>(2, static_cast<std::size_t>(1.0 / (options.most_hz * kBin_s)));
+  const auto shortest = std::max<std::size_t>(2, static_cast<std::size_t>(1.0 / (options.max_hz * kBin_s)));
   if (lags <= shortest + 1) return std::nullopt;
   const std::vector<double> correlation = autocorrelation(balance, lags);
   std::vector<std::size_t> peaks;
@@ -123,7 +123,7 @@ void BlinkNotice::add(EventSpan events) {
 void BlinkNotice::keep(const Event& event) {
   if (!isNth(event, every_nth_)) return;
   kept_.push_back(event);
-  if (blink_ || kept_.size() < most_kept_) return;
+  if (blink_ || kept_.size() < max_kept_) return;
   every_nth_ *= 2;
   std::erase_if(kept_, [&](const Event& other) { return !isNth(other, every_nth_); });
 }
@@ -145,7 +145,7 @@ void BlinkNotice::judge() {
   if (found) {
     found->share = shareOfBlinkingPixels(kept_, resolution_px_, found->period_s);
     if (found->peak + found->share > clearest_.peak + clearest_.share) clearest_ = *found;
-    if (found->peak >= options_.least_peak && found->share >= options_.least_share) blink_ = found;
+    if (found->peak >= options_.min_peak && found->share >= options_.min_share) blink_ = found;
   }
   if (blink_) return;
   if (balance_.size() > look) {

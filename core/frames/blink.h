@@ -31,10 +31,10 @@ double shareOfBlinkingPixels(EventSpan events, Resolution resolution_px, double 
 // those of a subset of the pixels, which suffices to detect blinking.
 class BlinkNotice {
  public:
-  static constexpr std::size_t kMostKept = 4'000'000;
+  static constexpr std::size_t kMaxKept = 4'000'000;
 
-  BlinkNotice(Resolution resolution_px, const BlinkOptions& options, std::size_t most_kept = kMostKept)
-      : resolution_px_(resolution_px), options_(options), most_kept_(most_kept) {}
+  BlinkNotice(Resolution resolution_px, const BlinkOptions& options, std::size_t max_kept = kMaxKept)
+      : resolution_px_(resolution_px), options_(options), max_kept_(max_kept) {}
 
   // Events in order of time, inside the resolution. Does nothing after a blink is detected.
   void add(EventSpan events);
@@ -61,7 +61,7 @@ class BlinkNotice {
   std::vector<float> balance_;
   std::int64_t origin_ns_ = 0;
   std::size_t judge_at_ = 0;  // bins
-  std::size_t most_kept_;
+  std::size_t max_kept_;
   std::uint32_t every_nth_ = 1;  // subset of pixels whose events are kept
   std::vector<Event> kept_;
 };

@@ -79,7 +79,7 @@ void BlinkTracker::see(const FlashSlot& slot) {
   if (found.empty() && slot.size() > 1) found = finder_.find(sumOfMiddle(slot, 1));
   if (finder_.renumbered()) dropEarlier();
   if (!window.tracked) searched_points_ = found.size();
-  most_points_ = std::max(most_points_, searched_points_);
+  max_points_ = std::max(max_points_, searched_points_);
   if (!found.empty() && slot.size() > 1) found = withoutMotion(slot, std::move(found), window);
   keep(std::move(found), window);
 }
@@ -89,7 +89,7 @@ void BlinkTracker::see(const FlashSlot& slot) {
 FoundPoints BlinkTracker::follow(const FlashCounts& whole, double time_s) {
   constexpr double kLongestGap_s = 0.5, kNearlyAll = 0.9, kToNeighbours = 0.4;
   const bool search = seen_.empty() || time_s - seen_.back().time_s > kLongestGap_s ||
-                      searched_points_ < most_points_ || followed_++ >= frames_.search_every_frames;
+                      searched_points_ < max_points_ || followed_++ >= frames_.search_every_frames;
   FoundPoints found;
   if (!search) {
     const FoundPoints& last = seen_.back().points;
@@ -110,15 +110,14 @@ FoundPoints BlinkTracker::withoutMotion(const FlashSlot& slot, FoundPoints found
       movement_px(finder_.measure(before, found, gate_px), finder_.measure(after, found, gate_px));
   const double between_s = middle_s(after, start_ns_) - middle_s(before, start_ns_);
   const double moves_px = moved ? *moved * 2.0 * window.half_width_s / between_s : 0.0;
-  if (moved && moves_px <= options_.largest_move_px) return found;
+  if (moved && moves_px <= options_.max_move_px) return found;
   const auto all = static_cast<double>(slot.size());
   if (moves_px > kLargestBlur_px * all) {
     window.outcome = WindowOutcome::Blurred;
     return {};
   }
   const auto parts =
-      moved ? std::max<std::size_t>(1, static_cast<std::size_t>(all * options_.largest_move_px / moves_px))
-            : 1;
+      moved ? std::max<std::size_t>(1, static_cast<std::size_t>(all * options_.max_move_px / moves_px)) : 1;
   const FlashCounts sum = sumOfMiddle(slot, std::min(parts, slot.size()));
   window.time_s = middle_s(sum, start_ns_);
   window.half_width_s = 0.5 * secondsSince(sum.begin_ns, sum.end_ns);
@@ -139,7 +138,7 @@ void BlinkTracker::keep(FoundPoints points, WindowReport window) {
   const auto all = static_cast<std::size_t>(board_.pointCount());
   window.candidates = static_cast<int>(points.size());
   const bool few =
-      static_cast<double>(points.size()) < std::max(4.0, frames_.least_points * static_cast<double>(all));
+      static_cast<double>(points.size()) < std::max(4.0, frames_.min_points * static_cast<double>(all));
   if (!points.empty())
     window.outcome = few                    ? WindowOutcome::TooFewInGrid
                      : points.size() == all ? WindowOutcome::Complete
@@ -165,9 +164,9 @@ BoardObservations BlinkTracker::finish() {
                                           "and {:.0f} % of "
                                           "the events, but {:.2f} and {:.0f} % are required",
                                           1.0 / clearest.period_s, clearest.peak, 100.0 * clearest.share,
-                                          options_.least_peak, 100.0 * options_.least_share)
+                                          options_.min_peak, 100.0 * options_.min_share)
                             : fmt::format("no blinking between {:.0f} and {:.0f} Hz detected",
-                                          options_.least_hz, options_.most_hz),
+                                          options_.min_hz, options_.max_hz),
         "Check that the screen flashes (a page that flashes is made " + howTo(HowTo::MakeFlashingPage) +
             "), that it fills a large part of the image, and that the camera is at rest. For a board that "
             "does not "
@@ -175,8 +174,7 @@ BoardObservations BlinkTracker::finish() {
             "that setting from the session, and move the camera");
   }
   gathering_->finish();
-  const std::vector<PointsInFrame> views =
-      joinedWhileStill(seen_, options_.still_px, frames_.smallest_sigma_px);
+  const std::vector<PointsInFrame> views = joinedWhileStill(seen_, options_.still_px, frames_.min_sigma_px);
   for (ViewFromFrame& view : viewsFromFrames(views, board_.pointCount()))
     so_far_.views.push_back(std::move(view.view));
   seen_.clear();

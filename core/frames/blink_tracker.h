@@ -58,7 +58,7 @@ class BlinkTracker {
   std::vector<PointsInFrame> seen_;
   int followed_ = 0;  // slots since the last search
   std::size_t searched_points_ = 0,
-              most_points_ = 0;  // points of the last search, and the most of any search
+              max_points_ = 0;  // points of the last search, and the most of any search
   BoardObservations so_far_;
 };
 

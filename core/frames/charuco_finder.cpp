@@ -84,9 +84,9 @@ class CharucoFinder : public PatternFinder {
     first_is_bright_ = reading.first_is_bright;
     const std::optional<PlaneMap> map = mapOf(reading.points, board_.spacing_m);
     if (!map) return {};
-    const FoundPoints found = measure(image, *map, 2.0 * options_.largest_move_px);
+    const FoundPoints found = measure(image, *map, 2.0 * options_.max_move_px);
     const std::optional<PlaneMap> nearer = mapOf(found, board_);
-    return nearer ? measure(image, *nearer, options_.largest_move_px) : FoundPoints{};
+    return nearer ? measure(image, *nearer, options_.max_move_px) : FoundPoints{};
   }
 
   FoundPoints measure(const GrayImage& image, const PlaneMap& map, double gate_px) const override {
@@ -132,9 +132,9 @@ class CharucoFinder : public PatternFinder {
 
   // A mirrored marker is not one of its dictionary, apart from single mistakes.
   void lookInMirror(const GrayImage& image) {
-    constexpr int kMostLooks = 20;
+    constexpr int kMaxLooks = 20;
     constexpr std::size_t kSome = 16;  // points of four markers
-    if (settled_ || mirror_looks_++ >= kMostLooks) return;
+    if (settled_ || mirror_looks_++ >= kMaxLooks) return;
     cv::Mat mirrored;
     cv::flip(viewOf(image), mirrored, 1);
     const MarkerFamily best_family = best_family_;
@@ -157,8 +157,7 @@ class CharucoFinder : public PatternFinder {
       markers.push_back(marker);
       places.push_back(place);
     }
-    if (agreementOfNeighbours(markers, places, options_.tag_neighbour_error) <
-        options_.least_marker_agreement)
+    if (agreementOfNeighbours(markers, places, options_.tag_neighbour_error) < options_.min_marker_agreement)
       return {};
     std::vector<ReadPoint> points;
     double side_px = 0.0;

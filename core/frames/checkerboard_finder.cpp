@@ -121,7 +121,7 @@ class CheckerboardFinder : public PatternFinder {
     if (rough.empty()) rough = searchWhole(image);
     const std::optional<PlaneMap> map = mapOf(rough, board_);
     if (!map) return {};
-    FoundPoints found = measure(image, *map, options_.largest_move_px);
+    FoundPoints found = measure(image, *map, options_.max_move_px);
     if (is_part) keepThoseOf(rough, found);  // beyond it there are no corners, or none were seen
     return found;
   }

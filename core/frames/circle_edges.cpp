@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kStep_px = 0.5;  // along a normal
 constexpr double kBetweenEdgePoints_px = 1.5;
-constexpr int kFewestEdgePoints = 10, kMostEdgePoints = 60;
-constexpr double kLeastSeen = 0.7;  // smallest share of the normals with an edge
+constexpr int kFewestEdgePoints = 10, kMaxEdgePoints = 60;
+constexpr double kMinSeen = 0.7;  // smallest share of the normals with an edge
 constexpr int kRounds = 3;
 
 using Shift =
@@ -41,14 +41,14 @@ Axes axesOf(const Ellipse& ellipse) {
 // Position of the edge along its normal: the middle of the brightness change around its steepest place.
 // `sign` is 1 if brightness grows outwards.
 std::optional<double> edgeAlong(const GrayImage& image, const EdgePoint& point, double reach_px, double sign,
-                                double least_contrast) {
-  constexpr int kMostSteps = 64, kAround = 3;
-  const int steps = std::min(static_cast<int>(std::ceil(reach_px / kStep_px)), kMostSteps);
+                                double min_contrast) {
+  constexpr int kMaxSteps = 64, kAround = 3;
+  const int steps = std::min(static_cast<int>(std::ceil(reach_px / kStep_px)), kMaxSteps);
   const double outermost = (steps + 1) * kStep_px;
   if (!isInside(image, point.on_ellipse + outermost * point.normal, 0.0) ||
       !isInside(image, point.on_ellipse - outermost * point.normal, 0.0))
     return std::nullopt;
-  std::array<double, 2 * kMostSteps + 4> profile{};
+  std::array<double, 2 * kMaxSteps + 4> profile{};
   const int count = 2 * steps + 3;
   for (int k = 0; k < count; ++k)
     profile.at(static_cast<std::size_t>(k)) =
@@ -66,12 +66,12 @@ std::optional<double> edgeAlong(const GrayImage& image, const EdgePoint& point, 
     moment += slope(k) * (k - steps - 1) * kStep_px;
   }
   // Each slope covers two steps: half their sum is the change of brightness.
-  if (0.5 * sum < least_contrast) return std::nullopt;
+  if (0.5 * sum < min_contrast) return std::nullopt;
   return moment / sum;
 }
 
 std::vector<EdgePoint> edgePoints(const GrayImage& image, const Ellipse& ellipse, double reach_px,
-                                  double sign, double least_contrast, int normals) {
+                                  double sign, double min_contrast, int normals) {
   const Eigen::Matrix2d to_normal = ellipse.from_unit_circle.inverse().transpose();
   std::vector<EdgePoint> points;
   for (int k = 0; k < normals; ++k) {
@@ -80,7 +80,7 @@ std::vector<EdgePoint> edgePoints(const GrayImage& image, const Ellipse& ellipse
     point.unit = {std::cos(angle), std::sin(angle)};
     point.normal = (to_normal * point.unit).normalized();
     point.on_ellipse = ellipse.centre_px + ellipse.from_unit_circle * point.unit;
-    const std::optional<double> off = edgeAlong(image, point, reach_px, sign, least_contrast);
+    const std::optional<double> off = edgeAlong(image, point, reach_px, sign, min_contrast);
     if (!off) continue;
     point.off_px = *off;
     points.push_back(point);
@@ -124,8 +124,8 @@ std::optional<Fit> fit(std::vector<EdgePoint> points, const Ellipse& ellipse) {
     result.covariance_px2 = variance * inverse.topLeftCorner<2, 2>();
     const auto dropped = std::erase_if(
         points, [&](const EdgePoint& p) { return std::abs(error(p)) > kOutlier * result.rms_px; });
-    constexpr int kMostPasses = 3;
-    if (dropped == 0 || pass >= kMostPasses) return result;
+    constexpr int kMaxPasses = 3;
+    if (dropped == 0 || pass >= kMaxPasses) return result;
   }
 }
 
@@ -137,20 +137,20 @@ Ellipse shifted(const Ellipse& ellipse, const Shift& shift) {
 }  // namespace
 
 std::optional<MeasuredEllipse> measureEllipse(const GrayImage& image, const Ellipse& expected,
-                                              double reach_px, CircleShade shade, double least_contrast) {
+                                              double reach_px, CircleShade shade, double min_contrast) {
   constexpr double kSmallestAxis_px = 1.5, kLargestRms_px = 0.6, kLastReach_px = 3.0, kSettled_px = 0.05;
   const Axes axes = axesOf(expected);
   if (!(axes.smallest_px > kSmallestAxis_px)) return std::nullopt;
   const int normals =
-      std::clamp(static_cast<int>(axes.perimeter_px / kBetweenEdgePoints_px), 12, kMostEdgePoints);
+      std::clamp(static_cast<int>(axes.perimeter_px / kBetweenEdgePoints_px), 12, kMaxEdgePoints);
   const double sign = shade == CircleShade::Dark ? 1.0 : -1.0;
   MeasuredEllipse measured{expected, {}};
   double rms_px = 0.0;
   for (int round = 0; round < kRounds; ++round) {
     const double reach = round == 0 ? reach_px : std::min(reach_px, kLastReach_px);
     const std::vector<EdgePoint> points = edgePoints(
-        image, measured.ellipse, std::min(reach, 0.9 * axes.smallest_px), sign, least_contrast, normals);
-    if (static_cast<double>(points.size()) < kLeastSeen * normals) return std::nullopt;
+        image, measured.ellipse, std::min(reach, 0.9 * axes.smallest_px), sign, min_contrast, normals);
+    if (static_cast<double>(points.size()) < kMinSeen * normals) return std::nullopt;
     const std::optional<Fit> found = fit(points, measured.ellipse);
     if (!found) return std::nullopt;
     measured.ellipse = shifted(measured.ellipse, found->shift);
@@ -167,7 +167,7 @@ std::optional<MeasuredEllipse> measureEllipse(const GrayImage& image, const Elli
 
 FoundPoints measureCircles(const GrayImage& image, const Board& board, const PlaneMap& map, double gate_px,
                            const FrameOptions& options) {
-  const double contrast = std::max(options.least_contrast, 2.0 * noiseSigma(image));
+  const double contrast = std::max(options.min_contrast, 2.0 * noiseSigma(image));
   const double nearest_m =
       board.spacing_m * (board.type == BoardType::AsymmetricCircles ? std::numbers::sqrt2 : 1.0);
   const double between = (nearest_m - 2.0 * board.radius_m) / board.radius_m;  // of circles, in radii
@@ -181,7 +181,7 @@ FoundPoints measureCircles(const GrayImage& image, const Board& board, const Pla
     const std::optional<MeasuredEllipse> ellipse =
         measureEllipse(image, expected, reach_px, board.circles, contrast);
     if (!ellipse || (ellipse->ellipse.centre_px - expected.centre_px).norm() > gate_px) continue;
-    const double floor_px2 = options.smallest_sigma_px * options.smallest_sigma_px;
+    const double floor_px2 = options.min_sigma_px * options.min_sigma_px;
     const Eigen::Matrix2d& shape = ellipse->ellipse.from_unit_circle;
     found.push_back({point, ellipse->ellipse.centre_px,
                      ellipse->covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity(),

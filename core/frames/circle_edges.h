@@ -24,7 +24,7 @@ struct MeasuredEllipse {
 // Edge points are at the steepest change of brightness along normals of the expected ellipse, within
 // `reach_px` of it. Empty if too little of the ellipse is visible.
 std::optional<MeasuredEllipse> measureEllipse(const GrayImage& image, const Ellipse& expected,
-                                              double reach_px, CircleShade shade, double least_contrast);
+                                              double reach_px, CircleShade shade, double min_contrast);
 
 // All circles within `gate_px` of their places according to the map.
 FoundPoints measureCircles(const GrayImage& image, const Board& board, const PlaneMap& map, double gate_px,

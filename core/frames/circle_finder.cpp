@@ -16,7 +16,7 @@ namespace evical {
 namespace {
 
 // Smallest ratio of areas, of an outline and of the ellipse of its moments, for a circle.
-constexpr double kLeastFill = 0.85, kMostFill = 1.1;
+constexpr double kMinFill = 0.85, kMaxFill = 1.1;
 constexpr double kLargestAspect = 6.0;
 constexpr double kSmallestArea_px2 = 12.0;
 
@@ -38,10 +38,10 @@ std::optional<Blob> blobOf(const std::vector<cv::Point>& outline, double largest
   if (!(product > 0.0) || trace * trace / product > std::pow(kLargestAspect + 1.0 / kLargestAspect, 2))
     return std::nullopt;
   const double fill = moments.m00 / (std::numbers::pi * std::sqrt(product));
-  if (fill < kLeastFill || fill > kMostFill) return std::nullopt;
+  if (fill < kMinFill || fill > kMaxFill) return std::nullopt;
   std::vector<cv::Point> hull;
   cv::convexHull(outline, hull);
-  if (moments.m00 < kLeastFill * cv::contourArea(hull)) return std::nullopt;
+  if (moments.m00 < kMinFill * cv::contourArea(hull)) return std::nullopt;
   // Outlines connect the centres of the outermost pixels.
   const double grown = std::pow(product, 0.25) + 0.5;
   blob.shape_px2 *= grown * grown / std::sqrt(product);
@@ -73,14 +73,14 @@ std::vector<Blob> findBlobs(const GrayImage& image, CircleShade shade) {
   std::vector<Blob> blobs;
   for (const double part : {0.25, 0.1, 0.05}) {
     const int block = std::max(7, static_cast<int>(part * shortest) | 1);
-    constexpr double kLeastDifference = 6.0;
+    constexpr double kMinDifference = 6.0;
     cv::Mat mask;
     if (shade == CircleShade::Dark)
       cv::adaptiveThreshold(smooth, mask, 255, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY_INV, block,
-                            kLeastDifference);
+                            kMinDifference);
     else
       cv::adaptiveThreshold(smooth, mask, 255, cv::ADAPTIVE_THRESH_MEAN_C, cv::THRESH_BINARY, block,
-                            -kLeastDifference);
+                            -kMinDifference);
     addBlobs(mask, largest_area_px2, blobs);
   }
   return blobs;
@@ -95,9 +95,9 @@ class CircleFinder : public PatternFinder {
     const std::optional<PlaneMap> rough = place(blobs);
     if (!rough) return {};
     // A lens may displace the board's ends from one plane's map: measured outwards from the detected points.
-    FoundPoints found = measure(image, *rough, 2.0 * options_.largest_move_px);
+    FoundPoints found = measure(image, *rough, 2.0 * options_.max_move_px);
     const std::optional<PlaneMap> map = mapOf(found, board_);
-    return map ? measure(image, *map, options_.largest_move_px) : FoundPoints{};
+    return map ? measure(image, *map, options_.max_move_px) : FoundPoints{};
   }
 
   FoundPoints measure(const GrayImage& image, const PlaneMap& map, double gate_px) const override {
@@ -109,12 +109,12 @@ class CircleFinder : public PatternFinder {
   CircleLattice latticeOf(const std::vector<Blob>& blobs) const {
     const double step = (board_.type == BoardType::AsymmetricCircles ? std::numbers::sqrt2 : 1.0) *
                         board_.spacing_m / board_.radius_m;
-    const LatticeOptions options = {.shortest_step_radii = 0.4 * step,
-                                    .longest_step_radii = 2.5 * step,
-                                    .largest_radius_ratio = 1.5,
+    const LatticeOptions options = {.min_step_radii = 0.4 * step,
+                                    .max_step_radii = 2.5 * step,
+                                    .max_radius_ratio = 1.5,
                                     .step_tolerance = 0.25,
-                                    .least_sine = 0.3,
-                                    .least_circles = kFewest};
+                                    .min_sine = 0.3,
+                                    .min_circles = kFewest};
     std::vector<LatticeCircle> circles;
     for (const Blob& blob : blobs) circles.push_back({blob.centre_px, blob.radius_px});
     return findCircleLattice(circles, options);

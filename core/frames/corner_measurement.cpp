@@ -32,9 +32,9 @@ class LocalMap {
   }
   // False if points are in too few rows for second derivatives.
   bool solve() {
-    constexpr double kLeastPivot = 1e-3;
+    constexpr double kMinPivot = 1e-3;
     const Eigen::LDLT<Eigen::Matrix<double, kTerms, kTerms>> solver(squares_);
-    if (!(solver.vectorD().minCoeff() > kLeastPivot)) return false;
+    if (!(solver.vectorD().minCoeff() > kMinPivot)) return false;
     terms_ = solver.solve(products_);
     return true;
   }
@@ -67,13 +67,13 @@ BentLines::BentLines(const FoundPoints& found, const Board& board) : step_m_(boa
 BentLines::Neighbours BentLines::around(std::size_t index) const {
   // Two neighbours in each direction; for denser points, as of tags, the same number.
   constexpr double kReach_steps = 2.9;
-  constexpr std::size_t kMostPoints = 25;
+  constexpr std::size_t kMaxPoints = 25;
   std::vector<std::pair<double, std::size_t>> near;  // squared distance, index
   for (std::size_t k = 0; k < on_board_m_.size(); ++k) {
     const double squared_m2 = (on_board_m_[k] - on_board_m_[index]).squaredNorm();
     if (squared_m2 < kReach_steps * kReach_steps * step_m_ * step_m_) near.emplace_back(squared_m2, k);
   }
-  const std::size_t taken = std::min(near.size(), kMostPoints);
+  const std::size_t taken = std::min(near.size(), kMaxPoints);
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(taken), near.end());
   Neighbours points;
   for (std::size_t k = 0; k < taken; ++k) {
@@ -145,7 +145,7 @@ CornerPattern charucoCorners(const Board& board, bool first_is_bright) {
 namespace {
 
 constexpr double kSmallestHalfWidth_px = 1.5;  // a smaller window does not show two edges
-constexpr int kMostIterations = 12;
+constexpr int kMaxIterations = 12;
 constexpr double kSettled_px = 0.003;
 
 // A window of pixels around a place, for the sums over it.
@@ -202,9 +202,9 @@ Sums sumsOf(const Window& window) {
 
 // True for two edges: with a single edge, the corner could slide along it.
 bool hasTwoEdges(const Eigen::Matrix2d& gradients) {
-  constexpr double kLeastRatio = 0.02;
+  constexpr double kMinRatio = 0.02;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(gradients, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues()(0) > kLeastRatio * eigen.eigenvalues()(1) && eigen.eigenvalues()(1) > 1.0;
+  return eigen.eigenvalues()(0) > kMinRatio * eigen.eigenvalues()(1) && eigen.eigenvalues()(1) > 1.0;
 }
 
 // The corner is where sum w g (g . d) = 0: to first order, errors e of the gradients move it by
@@ -231,7 +231,7 @@ Eigen::Matrix2d covarianceOf(const Window& window, const Eigen::Matrix2d& gradie
 
 // True if the fields around a corner are dark and bright according to the pattern.
 bool looksRight(const GrayImage& image, const Eigen::Vector2d& at_px, const Eigen::Matrix2d& field_px,
-                bool dark_ahead, double least_contrast) {
+                bool dark_ahead, double min_contrast) {
   const Eigen::Vector2d x = field_px.col(0), y = field_px.col(1);
   const auto mean = [&](const Eigen::Vector2d& way) {
     constexpr std::array<double, 4> kParts = {0.4, 0.6, 0.8, 1.0};  // noise averages out
@@ -241,7 +241,7 @@ bool looksRight(const GrayImage& image, const Eigen::Vector2d& at_px, const Eige
   };
   const auto ends = [&](const Eigen::Vector2d& way) { return std::minmax({mean(way), mean(-way)}); };
   const auto ahead = ends(x + y), across = ends(x - y);
-  return (dark_ahead ? across.first - ahead.second : ahead.first - across.second) > least_contrast;
+  return (dark_ahead ? across.first - ahead.second : ahead.first - across.second) > min_contrast;
 }
 
 // Errors from optics, print and sampling, normal to each of the two edges. Small windows have fewer pixels of
@@ -251,8 +251,7 @@ bool looksRight(const GrayImage& image, const Eigen::Vector2d& at_px, const Eige
 Eigen::Matrix2d modelError_px2(const Eigen::Matrix2d& px_per_m, double half_width_px,
                                const FrameOptions& options) {
   constexpr double kPower = 1.5;
-  const double sigma_px =
-      options.smallest_sigma_px * std::pow(options.subpixel_window_px / half_width_px, kPower);
+  const double sigma_px = options.min_sigma_px * std::pow(options.subpixel_window_px / half_width_px, kPower);
   Eigen::Matrix2d told = Eigen::Matrix2d::Zero();
   for (int edge = 0; edge < 2; ++edge) {
     const Eigen::Vector2d normal = Eigen::Vector2d(-px_per_m(1, edge), px_per_m(0, edge)).normalized();
@@ -278,7 +277,7 @@ std::optional<MeasuredCorner> measureCorner(const GrayImage& image, const Eigen:
     const Sums sums = sumsOf(window);
     if (!hasTwoEdges(sums.gradients)) return std::nullopt;
     const Eigen::Vector2d step = sums.gradients.inverse() * sums.products;
-    if (iteration >= kMostIterations || step.norm() < kSettled_px)
+    if (iteration >= kMaxIterations || step.norm() < kSettled_px)
       return MeasuredCorner{at + step, covarianceOf(window, sums.gradients, noise_sigma)};
     at += step;
   }
@@ -316,7 +315,7 @@ void unbend(const GrayImage& image, const Board& board, const std::vector<double
 FoundPoints measureCorners(const GrayImage& image, const Board& board, const CornerPattern& pattern,
                            const PlaneMap& map, double gate_px, const FrameOptions& options) {
   const double noise = noiseSigma(image);
-  const double contrast = std::max(options.least_contrast, 2.0 * noise);
+  const double contrast = std::max(options.min_contrast, 2.0 * noise);
   FoundPoints found;
   std::vector<double> half_widths_px;
   for (int point = 0; point < board.pointCount(); ++point) {

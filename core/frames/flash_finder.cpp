@@ -13,18 +13,18 @@ namespace evical {
 namespace {
 
 // Enlargement factor. Edges of circles are measured with subpixel accuracy, so circles need less enlargement.
-int enlargement(const Board& board, const Resolution& size_px, int smallest_side_px) {
+int enlargement(const Board& board, const Resolution& size_px, int min_side_px) {
   constexpr int kEnoughForCircles_px = 200;
   const int longest = std::max({size_px.width_px, size_px.height_px, 1});
-  if (board.hasCircles()) smallest_side_px = std::min(smallest_side_px, kEnoughForCircles_px);
-  return std::max(1, (smallest_side_px + longest - 1) / longest);
+  if (board.hasCircles()) min_side_px = std::min(min_side_px, kEnoughForCircles_px);
+  return std::max(1, (min_side_px + longest - 1) / longest);
 }
 
 // Options in the enlarged picture's pixels.
 FrameOptions enlargedOptions(FrameOptions options, int times) {
   options.subpixel_window_px *= times;
-  options.smallest_sigma_px *= times;
-  options.largest_move_px *= times;
+  options.min_sigma_px *= times;
+  options.max_move_px *= times;
   options.prediction_gate_px *= times;
   return options;
 }
@@ -54,7 +54,7 @@ FlashFinder::FlashFinder(const Board& board, Resolution size_px, const FrameOpti
                          const BlinkOptions& options)
     : board_(board),
       size_px_(size_px),
-      times_(enlargement(board, size_px, options.smallest_side_px)),
+      times_(enlargement(board, size_px, options.min_side_px)),
       options_(enlargedOptions(frames, times_)),
       finder_(board, options_, CheckerboardParts::Any) {}
 
@@ -97,18 +97,18 @@ FoundPoints FlashFinder::onSensor(const GrayImage& picture, const GrayImage& lar
 
 FoundPoints FlashFinder::saddles(const GrayImage& picture, const GrayImage& larger,
                                  const FoundPoints& found) const {
-  constexpr double kSmoothed = 0.1, kReach = 0.3;    // relative to the distance without other features
-  constexpr double kLeast_px = 0.5, kMost_px = 1.5;  // on the sensor
+  constexpr double kSmoothed = 0.1, kReach = 0.3;  // relative to the distance without other features
+  constexpr double kMin_px = 0.5, kMax_px = 1.5;   // on the sensor
   const std::optional<PlaneMap> map = mapOf(found, board_);
   if (!map) return {};
   const double noise = noiseSigma(picture);
-  const Eigen::Matrix2d floor_px2 = std::pow(options_.smallest_sigma_px, 2) * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d floor_px2 = std::pow(options_.min_sigma_px, 2) * Eigen::Matrix2d::Identity();
   FoundPoints measured;
   for (const FoundPoint& point : found) {
     const double plain_px =
         plain_m(board_) *
         std::sqrt(std::abs(map->placeOf(board_.point_m(point.point)).px_per_m.determinant()));
-    const double sigma_px = std::clamp(kSmoothed * plain_px, kLeast_px * times_, kMost_px * times_);
+    const double sigma_px = std::clamp(kSmoothed * plain_px, kMin_px * times_, kMax_px * times_);
     const auto corner = measureSaddle(larger, point.at_px, sigma_px, kReach * plain_px, noise, times_);
     if (corner)
       measured.push_back({point.point, corner->at_px, corner->covariance_px2 + floor_px2, point.ellipse_px2});

@@ -96,7 +96,7 @@ bool HalfPeriods::add(double balance) {
 
 namespace {
 
-constexpr int kMostParts = 16;        // per slot
+constexpr int kMaxParts = 16;         // per slot
 constexpr double kLongestHalf = 1.2;  // periods: in a longer one the light was out of sight
 constexpr int kLongestPause = 3;      // periods without any event
 
@@ -107,7 +107,7 @@ FlashGathering::FlashGathering(Resolution resolution_px, double period_s, double
       period_ns_(nanosecondsFrom(period_s)),
       bin_ns_(std::max<std::int64_t>(1, period_ns_ / HalfPeriods::kBinsPerPeriod)),
       slot_ns_(nanosecondsFrom(std::max(slot_s, period_s))),
-      part_ns_(slot_ns_ / kMostParts),
+      part_ns_(slot_ns_ / kMaxParts),
       sink_(std::move(sink)) {}
 
 void FlashGathering::start(std::int64_t time_ns) {

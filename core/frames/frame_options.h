@@ -10,21 +10,21 @@ enum class MarkerFamily { Automatic, Of4x4, Of5x5, Of6x6, Of7x7, Original };
 
 struct FrameOptions {
   double rate_hz;
-  double largest_blur_px;
-  double least_points;
+  double max_blur_px;
+  double min_points;
   TagBorder tag_border;
   MarkerFamily markers;
   int subpixel_window_px;
-  double smallest_sigma_px;
+  double min_sigma_px;
   double point_sigma_px;
-  double largest_move_px;
-  double least_contrast;
+  double max_move_px;
+  double min_contrast;
   double prediction_gate_px;
   int search_every_frames;
   double tag_neighbour_error;
-  double least_tag_agreement;
+  double min_tag_agreement;
   double same_tag_agreement;
-  double least_marker_agreement;
+  double min_marker_agreement;
 
   FrameOptions();  // the defaults
   constexpr explicit FrameOptions(NoDefaults) {}
@@ -35,11 +35,11 @@ struct FrameOptions {
 // Options of the detection of blinking boards.
 
 struct BlinkOptions {
-  double least_hz, most_hz;
-  double least_peak, least_share;
+  double min_hz, max_hz;
+  double min_peak, min_share;
   double look_s;
-  double largest_move_px, still_px;
-  int smallest_side_px;
+  double max_move_px, still_px;
+  int min_side_px;
 
   BlinkOptions();  // the defaults
   constexpr explicit BlinkOptions(NoDefaults) {}

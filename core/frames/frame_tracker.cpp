@@ -66,10 +66,10 @@ FoundPoints FrameTracker::follow(const GrayImage& image, double time_s) const {
   const std::optional<PlaneMap> nearer = mapOf(found, board_);
   if (!nearer) return {};
   if (static_cast<int>(found.size()) < board_.pointCount())
-    found = finder_.measure(image, *nearer, options_.largest_move_px);
+    found = finder_.measure(image, *nearer, options_.max_move_px);
   else
     std::erase_if(found, [&](const FoundPoint& point) {
-      return (nearer->at(board_.point_m(point.point)) - point.at_px).norm() > options_.largest_move_px;
+      return (nearer->at(board_.point_m(point.point)) - point.at_px).norm() > options_.max_move_px;
     });
   return enough(found) ? found : FoundPoints{};
 }
@@ -112,7 +112,7 @@ void FrameTracker::report(const FrameTime& time, FoundPoints points, bool tracke
   window.candidates = window.circles = static_cast<int>(points.size());
   window.tracked = tracked;
   const bool few =
-      static_cast<double>(points.size()) < std::max(4.0, options_.least_points * static_cast<double>(count));
+      static_cast<double>(points.size()) < std::max(4.0, options_.min_points * static_cast<double>(count));
   window.outcome = points.empty()           ? WindowOutcome::NoLattice
                    : few                    ? WindowOutcome::TooFewInGrid
                    : points.size() == count ? WindowOutcome::Complete
@@ -136,7 +136,7 @@ BoardObservations FrameTracker::finish() {
   observations.camera = camera_;
   std::vector<ViewFromFrame> views = viewsFromFrames(frames, board_.pointCount());
   for (std::size_t k = 0; k < views.size(); ++k) {
-    if (views[k].speed_px_s * frames[k].exposure_s > options_.largest_blur_px) {
+    if (views[k].speed_px_s * frames[k].exposure_s > options_.max_blur_px) {
       windows_[seen_[k].window].outcome = WindowOutcome::Blurred;
       windows_[seen_[k].window].circles = 0;
     } else {

@@ -22,10 +22,10 @@
 namespace evical {
 namespace {
 
-constexpr std::int64_t kMostPixels = 200'000'000;  // larger than any sensor
-constexpr std::int64_t kFewPixels = 20'000'000;    // of a picture that may be as even as it likes
-constexpr std::int64_t kMostPixelsOfByte = 100;    // of a larger one
-constexpr std::size_t kMostScans = 100;            // real ones have up to 15
+constexpr std::int64_t kMaxPixels = 200'000'000;  // larger than any sensor
+constexpr std::int64_t kFewPixels = 20'000'000;   // of a picture that may be as even as it likes
+constexpr std::int64_t kMaxPixelsOfByte = 100;    // of a larger one
+constexpr std::size_t kMaxScans = 100;            // real ones have up to 15
 constexpr double kWhitePart = 0.995;
 
 struct Layout {
@@ -68,8 +68,8 @@ Layout layoutOf(FrameFormat format) {
   }
 }
 
-void refuseAbsurdSize(const Resolution& size, std::int64_t most_pixels, const std::string& place) {
-  if (size.known() && std::int64_t{size.width_px} * size.height_px <= most_pixels) return;
+void refuseAbsurdSize(const Resolution& size, std::int64_t max_pixels, const std::string& place) {
+  if (size.known() && std::int64_t{size.width_px} * size.height_px <= max_pixels) return;
   throw badInput(
       place,
       fmt::format("claims a size of {} x {} pixels, which is implausible", size.width_px, size.height_px),
@@ -97,7 +97,7 @@ void swapBytes(cv::Mat& sixteen) {
 }
 
 cv::Mat rawPixels(const Frame& frame, const std::string& place) {
-  refuseAbsurdSize(frame.size_px, kMostPixels, place);
+  refuseAbsurdSize(frame.size_px, kMaxPixels, place);
   const Layout layout = layoutOf(frame.format);
   const auto width = static_cast<std::size_t>(frame.size_px.width_px);
   const auto height = static_cast<std::size_t>(frame.size_px.height_px);
@@ -128,10 +128,10 @@ cv::Mat decoded(const Frame& frame, const std::string& place) {
   if (!claimed_px)
     throw badInput(place, "is not a JPEG, PNG, PGM, TIFF or BMP picture, or is truncated in its header",
                    "Save it as PNG, or remove it");
-  refuseAbsurdSize(*claimed_px, std::clamp(kMostPixelsOfByte * std::ssize(bytes), kFewPixels, kMostPixels),
+  refuseAbsurdSize(*claimed_px, std::clamp(kMaxPixelsOfByte * std::ssize(bytes), kFewPixels, kMaxPixels),
                    place);
   const PictureKind kind = pictureKind(bytes);
-  if (kind == PictureKind::Jpeg && jpegScans(bytes) > kMostScans)
+  if (kind == PictureKind::Jpeg && jpegScans(bytes) > kMaxScans)
     throw badInput(place, fmt::format("has {} scans, too many for a picture", jpegScans(bytes)),
                    "Save it again, or remove it");
   cv::Mat picture;

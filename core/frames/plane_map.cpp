@@ -61,7 +61,7 @@ PlaneMap::Place PlaneMap::placeOf(const Eigen::Vector2d& on_board_m) const {
 }
 
 std::vector<ReadPoint> agreeingPoints(const std::vector<ReadPoint>& points, double tolerance_px) {
-  if (points.size() < kLeastForHomography) return {};
+  if (points.size() < kMinForHomography) return {};
   std::vector<cv::Point2d> from, to;
   for (const ReadPoint& point : points) {
     from.emplace_back(point.on_board_m.x(), point.on_board_m.y());

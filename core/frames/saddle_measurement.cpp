@@ -50,10 +50,10 @@ Slope slopeAt(const GrayImage& image, const Eigen::Vector2d& at, double sigma) {
 std::optional<MeasuredCorner> measureSaddle(const GrayImage& image, const Eigen::Vector2d& start_px,
                                             double sigma_px, double reach_px, double noise_sigma,
                                             double correlated_px) {
-  constexpr int kMostIterations = 12;
+  constexpr int kMaxIterations = 12;
   constexpr double kSettled = 1e-3;  // relative to the smoothing's sigma
   Eigen::Vector2d at = start_px;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     if (!isInside(image, at, kReach * sigma_px + 2.0)) return std::nullopt;
     const Slope slope = slopeAt(image, at, sigma_px);
     if (!(slope.bend.determinant() < 0.0)) return std::nullopt;

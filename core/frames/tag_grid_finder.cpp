@@ -155,7 +155,7 @@ class TagGridFinder : public PatternFinder {
       std::vector<SeenTag> tags = readers_.at(border_).read(image);
       // If the requested border detects fewer tags, the other one may be correct: it is reported.
       const bool asked = options_.tag_border != TagBorder::Automatic;
-      if (asked && looks_ < kMostLooks) {
+      if (asked && looks_ < kMaxLooks) {
         ++looks_;
         other_border_ += readers_.at(border_ == 1 ? 2 : 1).read(image).size() > tags.size() ? 1 : 0;
       }
@@ -191,7 +191,7 @@ class TagGridFinder : public PatternFinder {
 
   // A mirrored tag is not a tag of the family.
   void lookInMirror(const GrayImage& image) {
-    if (largest_id_ >= 0 || mirror_looks_++ >= kMostLooks) return;
+    if (largest_id_ >= 0 || mirror_looks_++ >= kMaxLooks) return;
     GrayImage mirrored{image.size_px, std::vector<std::uint8_t>(image.pixels.size())};
     cv::Mat picture(image.size_px.height_px, image.size_px.width_px, CV_8UC1, mirrored.pixels.data());
     cv::flip(viewOf(image), picture, 1);
@@ -221,7 +221,7 @@ class TagGridFinder : public PatternFinder {
     const double best = *std::max_element(agreements.begin(), agreements.end());
     std::vector<TagLayout> agreeing;
     for (std::size_t k = 0; k < possible_.size(); ++k)
-      if (best >= options_.least_tag_agreement && agreements[k] >= best - options_.same_tag_agreement)
+      if (best >= options_.min_tag_agreement && agreements[k] >= best - options_.same_tag_agreement)
         agreeing.push_back(possible_[k]);
     return agreeing;
   }
@@ -263,12 +263,12 @@ class TagGridFinder : public PatternFinder {
 
   // From the decoded tags to their neighbours, until no more corners are found.
   FoundPoints spread(const GrayImage& image, const PlaneMap& from_tags) const {
-    FoundPoints found = measure(image, from_tags, 2.0 * options_.largest_move_px);
-    constexpr int kMostRounds = 4;
-    for (int round = 0; round < kMostRounds; ++round) {
+    FoundPoints found = measure(image, from_tags, 2.0 * options_.max_move_px);
+    constexpr int kMaxRounds = 4;
+    for (int round = 0; round < kMaxRounds; ++round) {
       const std::optional<PlaneMap> map = mapOf(found, board_);
       if (!map) return {};
-      FoundPoints more = measure(image, *map, options_.largest_move_px);
+      FoundPoints more = measure(image, *map, options_.max_move_px);
       const bool grown = more.size() > found.size();
       found = std::move(more);
       if (!grown) break;
@@ -276,7 +276,7 @@ class TagGridFinder : public PatternFinder {
     return found;
   }
 
-  static constexpr int kMostLooks = 20;
+  static constexpr int kMaxLooks = 20;
 
   Board board_;
   FrameOptions options_;

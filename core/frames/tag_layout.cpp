@@ -15,11 +15,11 @@ Eigen::Vector2d middleOf(const TagCorners& corners) {
 
 // Indices of the nearest other tags in the picture.
 std::vector<std::size_t> neighboursOf(std::size_t tag, const std::vector<Eigen::Vector2d>& middles_px) {
-  constexpr std::size_t kMost = 8;  // fewer would be in one row if the board is seen from the side
+  constexpr std::size_t kMax = 8;  // fewer would be in one row if the board is seen from the side
   std::vector<std::size_t> others;
   for (std::size_t k = 0; k < middles_px.size(); ++k)
     if (k != tag) others.push_back(k);
-  const std::size_t count = std::min(kMost, others.size());
+  const std::size_t count = std::min(kMax, others.size());
   std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count), others.end(),
                     [&](std::size_t a, std::size_t b) {
                       return (middles_px[a] - middles_px[tag]).squaredNorm() <

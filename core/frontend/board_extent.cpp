@@ -69,8 +69,8 @@ class ExtentJudge {
         trace_(trace),
         scene_(scene),
         options_(options),
-        centre_sigma_px_(options.extent.least_sigma_px),
-        radius_sigma_px_(options.extent.least_sigma_px) {
+        centre_sigma_px_(options.extent.min_sigma_px),
+        radius_sigma_px_(options.extent.min_sigma_px) {
     // Of the board's fit, in squares of a circle's sigma.
     Eigen::Matrix<double, 8, 8> information = 1e-6 * Eigen::Matrix<double, 8, 8>::Identity();
     double centres_px2 = 0.0, radii_px2 = 0.0, radii_px = 0.0, count = 0.0;
@@ -138,16 +138,15 @@ class ExtentJudge {
   }
 
   LineState stateOf(const Line& line, int seen) const {
-    return stateOf(line, motionOf(line), seen, options_.extent.least_line, 2);
+    return stateOf(line, motionOf(line), seen, options_.extent.min_line, 2);
   }
-  LineState stateOf(const Line& line, const BoardMotion& motion, int seen, double least_share,
-                    int least_circles) const {
+  LineState stateOf(const Line& line, const BoardMotion& motion, int seen, double min_share,
+                    int min_circles) const {
     const int expected = expectedCircles(motion, line.scene, halfSlot_s());
-    const double least = least_circles;
-    if (expected < std::max(least, least_share * line.scene.board.pointCount())) return LineState::OutOfView;
-    if (seen >= std::max(least, least_share * expected)) return LineState::Present;
-    return seen <= (1.0 - options_.extent.least_line) * 0.5 * expected ? LineState::Absent
-                                                                       : LineState::Unclear;
+    const double least = min_circles;
+    if (expected < std::max(least, min_share * line.scene.board.pointCount())) return LineState::OutOfView;
+    if (seen >= std::max(least, min_share * expected)) return LineState::Present;
+    return seen <= (1.0 - options_.extent.min_line) * 0.5 * expected ? LineState::Absent : LineState::Unclear;
   }
 
   // Discs of the background are on one line by chance now and then. So most of the line must be in view, and there must be
@@ -155,8 +154,8 @@ class ExtentJudge {
   LineState beyond(const Line& line) const {
     const BoardMotion motion = motionOf(line);
     const ExtentOptions& extent = options_.extent;
-    return stateOf(line, motion, alike(line, motion), extent.least_line_beyond,
-                   std::min(extent.least_circles_beyond, line.scene.board.pointCount()));
+    return stateOf(line, motion, alike(line, motion), extent.min_line_beyond,
+                   std::min(extent.min_circles_beyond, line.scene.board.pointCount()));
   }
 
   // First line of the board in the image, from an edge inwards.

@@ -96,14 +96,14 @@ std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& h, const BoardSc
   if (!(det > 0.0) || !(axes2.trace() > 0.0)) return std::nullopt;
   out.shape = axes2.inverse();
   const double half_trace = 0.5 * axes2.trace();
-  out.largest_radius_px = std::sqrt(half_trace + std::sqrt(std::max(half_trace * half_trace - det, 0.0)));
+  out.max_radius_px = std::sqrt(half_trace + std::sqrt(std::max(half_trace * half_trace - det, 0.0)));
   out.sensor_centre_px = out.centre_px;
-  out.sensor_radius_px = out.largest_radius_px;
+  out.sensor_radius_px = out.max_radius_px;
   if (scene.camera) {
     out.sensor_centre_px = pixelFromIdeal(*scene.camera, out.centre_px);
     const double scale = std::sqrt(std::abs(idealPixelScale(*scene.camera, out.centre_px).determinant()));
     if (!(scale > 1e-3)) return std::nullopt;
-    out.sensor_radius_px = out.largest_radius_px / scale;
+    out.sensor_radius_px = out.max_radius_px / scale;
   }
   return out;
 }
@@ -134,27 +134,26 @@ double boardSpeed_px_s(const BoardMotion& motion, const BoardScene& scene) {
   const std::vector<CircleImage> circles = projectBoard(motion.ideal_from_board, scene);
   double sum = 0.0;
   for (const CircleImage& circle : circles) {
-    const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
+    const double sensor_scale = circle.sensor_radius_px / circle.max_radius_px;
     sum += motion.velocityAt(circle.centre_px).norm() * sensor_scale;
   }
   return circles.empty() ? 0.0 : sum / static_cast<double>(circles.size());
 }
 
 std::vector<int> circlesExpected(const BoardMotion& motion, const BoardScene& scene, double half_window_s) {
-  constexpr double kLeastTravel_px = 1.2;  // an edge that stays within a pixel fires few events or none
+  constexpr double kMinTravel_px = 1.2;  // an edge that stays within a pixel fires few events or none
   std::vector<int> expected;
   for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene)) {
-    const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
+    const double sensor_scale = circle.sensor_radius_px / circle.max_radius_px;
     const double travel_px = motion.velocityAt(circle.centre_px).norm() * sensor_scale * 2.0 * half_window_s;
-    if (insideImage(circle, scene.resolution_px) && travel_px > kLeastTravel_px)
+    if (insideImage(circle, scene.resolution_px) && travel_px > kMinTravel_px)
       expected.push_back(circle.circle);
   }
   return expected;
 }
 
 double fitHalfWindow_s(double speed_px_s, const TrackingOptions& options) {
-  return std::min(options.fit_travel_px / (2.0 * std::max(speed_px_s, 1.0)),
-                  options.longest_fit_half_window_s);
+  return std::min(options.fit_travel_px / (2.0 * std::max(speed_px_s, 1.0)), options.max_fit_half_window_s);
 }
 
 PlaneFlow fitPlaneFlow(const ImageFrame& frame, const std::vector<MovingPoint>& points) {

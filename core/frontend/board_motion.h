@@ -68,7 +68,7 @@ struct CircleImage {
   int circle = 0;
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
   Eigen::Matrix2d shape = Eigen::Matrix2d::Identity();
-  double largest_radius_px = 0.0;
+  double max_radius_px = 0.0;
   Eigen::Vector2d sensor_centre_px = Eigen::Vector2d::Zero();  // in the sensor's own pixels
   double sensor_radius_px = 0.0;
 };
@@ -90,7 +90,7 @@ inline EdgeDistance distanceToEdge(const CircleImage& circle, const Eigen::Vecto
   const Eigen::Vector2d from_centre = ideal_pixel - circle.centre_px;
   const Eigen::Vector2d gradient = circle.shape * from_centre;
   const double slope = gradient.norm();
-  if (slope < 1e-12) return {-circle.largest_radius_px, Eigen::Vector2d::UnitX()};
+  if (slope < 1e-12) return {-circle.max_radius_px, Eigen::Vector2d::UnitX()};
   const double level = std::sqrt(std::max(from_centre.dot(gradient), 1e-12));
   return {level * (level - 1.0) / slope, gradient / slope};
 }
@@ -115,9 +115,9 @@ inline double crossingWeight(double leads, double events, double typical_events,
   const auto ramp = [](double value, double zero, double one) {
     return value <= zero ? 0.0 : (value >= one ? 1.0 : (value - zero) / (one - zero));
   };
-  const double weight = ramp(leads, options.least_polarity_cosine, options.full_polarity_cosine);
+  const double weight = ramp(leads, options.min_polarity_cosine, options.full_polarity_cosine);
   if (typical_events <= 0.0) return weight;
-  return weight * ramp(events / typical_events, options.least_event_part, options.full_event_part);
+  return weight * ramp(events / typical_events, options.min_event_part, options.full_event_part);
 }
 
 // Fits homography, velocity field and radius offset to the bursts of a window whose middle is start.time_ns.

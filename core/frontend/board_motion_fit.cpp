@@ -85,7 +85,7 @@ void gatherPoints(const BurstWindow& window, const CircleMotion& moving, double 
   points.clear();
   const CircleImage& circle = moving.circle;
   const double speed = moving.velocity.norm() + 0.5 * half_window_s * moving.acceleration.norm();
-  const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
+  const double sensor_scale = circle.sensor_radius_px / circle.max_radius_px;
   const double reach = circle.sensor_radius_px + slack_px + speed * half_window_s * sensor_scale;
   const Eigen::Vector2d& middle = circle.sensor_centre_px;
   window.visitBox(

@@ -22,12 +22,12 @@ CircleLattice findCircleLattice(const std::vector<MovingCircle>& circles, const 
   std::vector<LatticeCircle> still;
   still.reserve(circles.size());
   for (const MovingCircle& circle : circles) still.push_back({circle.centre_px, circle.radius_px});
-  const LatticeOptions lattice = {.shortest_step_radii = options.shortest_step_radii,
-                                  .longest_step_radii = options.longest_step_radii,
-                                  .largest_radius_ratio = options.largest_radius_ratio,
+  const LatticeOptions lattice = {.min_step_radii = options.min_step_radii,
+                                  .max_step_radii = options.max_step_radii,
+                                  .max_radius_ratio = options.max_radius_ratio,
                                   .step_tolerance = options.step_tolerance,
-                                  .least_sine = options.least_sine,
-                                  .least_circles = options.least_circles};
+                                  .min_sine = options.min_sine,
+                                  .min_circles = options.min_circles};
   return findCircleLattice(still, lattice);
 }
 
@@ -62,7 +62,7 @@ std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_
                                            const std::vector<MovingPoint>& ideal, const Board& board,
                                            const GridOptions& options) {
   for (;;) {
-    if (static_cast<int>(placed.size()) < options.least_circles) return std::nullopt;
+    if (static_cast<int>(placed.size()) < options.min_circles) return std::nullopt;
     std::vector<Eigen::Vector2d> from, to;
     for (const auto& [circle, index] : placed) {
       from.push_back(board.point_m(circle));
@@ -149,7 +149,7 @@ std::vector<Eigen::Matrix3d> withoutTwins(const std::vector<Eigen::Matrix3d>& mo
 
 }  // namespace
 
-std::vector<Eigen::Matrix3d> latticeShifts(const Board& board, double least_overlap) {
+std::vector<Eigen::Matrix3d> latticeShifts(const Board& board, double min_overlap) {
   const std::map<LatticePlace, int> lattice = boardLattice(board);
   Eigen::Matrix2d metres_per_step = board.spacing_m * Eigen::Matrix2d::Identity();
   if (board.type == BoardType::AsymmetricCircles)
@@ -170,7 +170,7 @@ std::vector<Eigen::Matrix3d> latticeShifts(const Board& board, double least_over
     for (std::size_t k = 0; k < counts.size(); ++k) {
       const int count = counts[k], at = static_cast<int>(k);
       const LatticePlace shift{at / side - 2 * reach, at % side - 2 * reach};
-      if (count == 0 || count < least_overlap * board.pointCount()) continue;
+      if (count == 0 || count < min_overlap * board.pointCount()) continue;
       if (turn == kLatticeTurns.front() && shift == LatticePlace{0, 0}) continue;
       Eigen::Matrix2d turned;
       turned << turn[0], turn[1], turn[2], turn[3];
@@ -193,7 +193,7 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
   // All shifts of one map have the same axes: if its first placement is not square, none is.
   std::set<LatticeMap> sheared;
   for (LatticePlacement& laid : layOnBoard(lattice, scene.board, kNearlyBest)) {
-    if (scene.camera && placements.size() == kMostPlacements) break;
+    if (scene.camera && placements.size() == kMaxPlacements) break;
     if (sheared.contains(laid.map)) continue;
     BoardPlacement placement;
     placement.circles = std::move(laid.circles);

@@ -23,17 +23,17 @@ struct BoardPlacement {
 };
 
 // A board that is given too large has hundreds of placements on the same circles.
-inline constexpr std::size_t kMostPlacements = 48;
+inline constexpr std::size_t kMaxPlacements = 48;
 
 // Placements with nearly the largest number of circles on the board, in descending order. If the camera is known, at
-// most kMostPlacements, and only those that a camera can see: two equal, perpendicular axes behind the homography.
+// most kMaxPlacements, and only those that a camera can see: two equal, perpendicular axes behind the homography.
 std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
                                          const std::vector<MovingCircle>& circles, const BoardScene& scene,
                                          std::int64_t time_ns, const GridOptions& options);
 
 // Motions of the board plane that map the board's lattice onto itself, shifted or rotated, so that at least
-// `least_overlap` of its circles coincide with circles: placements that may be confused. The identity is the
+// `min_overlap` of its circles coincide with circles: placements that may be confused. The identity is the
 // first. Motions that differ by a symmetry of the whole lattice are listed once.
-std::vector<Eigen::Matrix3d> latticeShifts(const Board& board, double least_overlap);
+std::vector<Eigen::Matrix3d> latticeShifts(const Board& board, double min_overlap);
 
 }  // namespace evical

@@ -86,7 +86,7 @@ std::optional<Eigen::Matrix3d> shiftBetween(const BoardPlacement& first, const B
 std::vector<PlacementGroup> groupedByCircles(const std::vector<BoardPlacement>& placements,
                                              const Board& board) {
   std::vector<PlacementGroup> groups;
-  for (std::size_t k = 0; k < std::min(placements.size(), kMostPlacements); ++k) {
+  for (std::size_t k = 0; k < std::min(placements.size(), kMaxPlacements); ++k) {
     bool known = false;
     for (PlacementGroup& group : groups) {
       const auto shift = shiftBetween(*group.first, placements[k], board);
@@ -119,7 +119,7 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene
   const int count = scene.board.pointCount();
   if (best->measured < count) {
     const std::vector<PlacementScore> rivals =
-        rivalPlacements(best->motion, latticeShifts(scene.board, options.grid.least_rival_overlap), window,
+        rivalPlacements(best->motion, latticeShifts(scene.board, options.grid.min_rival_overlap), window,
                         scene, search.half_window_s, options.tracking);
     const PlacementScore& first = rivals.front();
     best = Judged{shifted(best->motion, first.shift), first.measured, first.missing};
@@ -128,8 +128,8 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene
       return WindowOutcome::Ambiguous;
     }
   }
-  if (best->measured < std::max<double>(options.grid.least_circles, options.grid.least_partial * count) ||
-      best->missing > options.grid.most_missing * best->measured) {
+  if (best->measured < std::max<double>(options.grid.min_circles, options.grid.min_partial * count) ||
+      best->missing > options.grid.max_missing * best->measured) {
     return WindowOutcome::TooFewInGrid;
   }
   search.motion = best->motion;
@@ -145,16 +145,16 @@ void searchWindow(const BurstWindow& window, double speed_px_s, const BoardScene
                   const FrontEndOptions& options, BoardSearch& search) {
   const GridOptions& grid = options.grid;
   search.bursts = static_cast<int>(window.bursts().size());
-  if (search.bursts < options.detection.least_window_bursts)
+  if (search.bursts < options.detection.min_window_bursts)
     return fail(search, SearchStage::Bursts, WindowOutcome::TooFewEvents);
   search.candidates = findCandidates(window, search.source, options);
   search.circles = fitMovingCircles(window, search.candidates, speed_px_s, options.moving_circle);
-  if (static_cast<int>(search.circles.size()) < grid.least_circles)
+  if (static_cast<int>(search.circles.size()) < grid.min_circles)
     return fail(search, SearchStage::Circles, WindowOutcome::TooFewCircles);
   search.lattice = findCircleLattice(search.circles, grid);
-  if (search.lattice.size() < kLeastForHomography)
+  if (search.lattice.size() < kMinForHomography)
     return fail(search, SearchStage::Lattice, WindowOutcome::NoLattice);
-  if (static_cast<int>(search.lattice.size()) < grid.least_circles)
+  if (static_cast<int>(search.lattice.size()) < grid.min_circles)
     return fail(search, SearchStage::Lattice, WindowOutcome::TooFewInGrid);
   search.placements = placeOnBoard(search.lattice, search.circles, scene, window.middle_ns(), grid);
   if (search.placements.empty()) return fail(search, SearchStage::Placement, WindowOutcome::NoLattice);
@@ -175,12 +175,12 @@ class Searcher {
   double halfWindow_s(double factor, CandidateSource source) const {
     const double travel_px = source == CandidateSource::RingVote ? options_.ring_vote.window_travel_px
                                                                  : options_.normal_flow.window_travel_px;
-    return std::clamp(factor * travel_px / (2.0 * speed_px_s_), 0.5 * options_.detection.shortest_window_s,
+    return std::clamp(factor * travel_px / (2.0 * speed_px_s_), 0.5 * options_.detection.min_window_s,
                       kSearchReach_s);
   }
 
   const BurstWindow& windowOf(double half_window_s) {
-    window_.fillSupported(history_, middle_ns_, half_window_s, options_.ring_vote.least_support);
+    window_.fillSupported(history_, middle_ns_, half_window_s, options_.ring_vote.min_support);
     return window_;
   }
 

@@ -58,7 +58,7 @@ BoardObservations BoardTracker::finish() {
   if (extractor_) extractor_->finish(new_bursts_);
   for (const EdgeCrossing& burst : new_bursts_) last_burst_ns_ = std::max(last_burst_ns_, burst.time_ns);
   history_.add(new_bursts_);
-  const std::int64_t shortest_ns = nanosecondsFrom(options_.detection.shortest_window_s);
+  const std::int64_t shortest_ns = nanosecondsFrom(options_.detection.min_window_s);
   while (started_ && next_begin_ns_ + shortest_ns < last_burst_ns_ && !stop_.stop_requested()) {
     skipEmptyTime(last_burst_ns_);
     const WindowSlot slot = nextSlot();
@@ -76,9 +76,9 @@ BoardObservations BoardTracker::finish() {
 
 std::int64_t BoardTracker::slotLength_ns(const BoardMotion* motion) const {
   const DetectionOptions& d = options_.detection;
-  if (!motion) return nanosecondsFrom(0.5 * (d.shortest_window_s + d.longest_window_s));
+  if (!motion) return nanosecondsFrom(0.5 * (d.min_window_s + d.max_window_s));
   const double speed = std::max(boardSpeed_px_s(*motion, scene_), 1.0);
-  return nanosecondsFrom(std::clamp(d.window_travel_px / speed, d.shortest_window_s, d.longest_window_s));
+  return nanosecondsFrom(std::clamp(d.window_travel_px / speed, d.min_window_s, d.max_window_s));
 }
 
 WindowSlot BoardTracker::nextSlot() const {
@@ -88,14 +88,14 @@ WindowSlot BoardTracker::nextSlot() const {
 // Skips long times without motion, which have no windows to process.
 void BoardTracker::skipEmptyTime(std::int64_t until_ns) {
   if (motion_) return;
-  const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.longest_fit_half_window_s);
+  const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.max_fit_half_window_s);
   const std::int64_t next_ns = history_.nextAfter(next_begin_ns_ - margin_ns).value_or(until_ns);
   const std::int64_t end_ns = std::min(next_ns, until_ns) - margin_ns;
   if (end_ns - next_begin_ns_ > kLongPause_ns) next_begin_ns_ = end_ns;
 }
 
 void BoardTracker::processWindows() {
-  const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.longest_fit_half_window_s);
+  const std::int64_t margin_ns = nanosecondsFrom(options_.tracking.max_fit_half_window_s);
   while (!stop_.stop_requested()) {
     skipEmptyTime(complete_until_ns_);
     const WindowSlot slot = nextSlot();
@@ -117,7 +117,7 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
       keep(trace);
       return;
     }
-    if (static_cast<double>(middle_ns - motion_->time_ns) * 1e-9 > options_.tracking.longest_gap_s) {
+    if (static_cast<double>(middle_ns - motion_->time_ns) * 1e-9 > options_.tracking.max_gap_s) {
       motion_.reset();
       endTrack();
     }
@@ -134,7 +134,7 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
     acquire(slot, *search.motion);
   } else {
     search_interval_s_ =
-        std::min(kSearchIntervalGrowth * search_interval_s_, options_.detection.longest_search_interval_s);
+        std::min(kSearchIntervalGrowth * search_interval_s_, options_.detection.max_search_interval_s);
     miss(slot, &search);
   }
 }
@@ -160,7 +160,7 @@ void BoardTracker::trackBackwards(const WindowSlot& from, BoardMotion motion) {
   while (end_ns > oldest_ns) {
     const std::int64_t length_ns = slotLength_ns(&motion);
     const WindowSlot slot{std::max(end_ns - length_ns, oldest_ns), end_ns};
-    if (slot.end_ns - slot.begin_ns < nanosecondsFrom(0.5 * options_.detection.shortest_window_s)) break;
+    if (slot.end_ns - slot.begin_ns < nanosecondsFrom(0.5 * options_.detection.min_window_s)) break;
     WindowTrace trace = track(slot, motion);
     if (!trace.held()) break;
     motion = *trace.motion;
@@ -256,7 +256,7 @@ void BoardTracker::miss(const WindowSlot& slot, const BoardSearch* search) {
   if (search) {
     report.outcome = search->outcome;
     report.candidates = static_cast<int>(search->candidates.size());
-  } else if (report.events >= options_.detection.least_window_bursts) {
+  } else if (report.events >= options_.detection.min_window_bursts) {
     // Between two searches: the same reason as the search before.
     report.outcome =
         observations_.windows.empty() ? WindowOutcome::TooFewCircles : observations_.windows.back().outcome;

@@ -79,7 +79,7 @@ std::optional<std::int64_t> BurstHistory::nextAfter(std::int64_t from_ns) const 
   return std::max(from_ns, slice->index * kSlice_ns);
 }
 
-void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeCrossing>& bursts) {
+void keepSupported(Resolution resolution_px, int min_support, std::vector<EdgeCrossing>& bursts) {
   const int stride = resolution_px.width_px + 2;
   std::vector<std::uint8_t> occupied(static_cast<std::size_t>(stride * (resolution_px.height_px + 2)), 0);
   for (const EdgeCrossing& burst : bursts) {
@@ -92,7 +92,7 @@ void keepSupported(Resolution resolution_px, int least_support, std::vector<Edge
       const auto row = static_cast<std::size_t>((burst.y_px + dy) * stride + burst.x_px);
       for (std::size_t dx = 0; dx <= 2; ++dx) support += (occupied[row + dx] & bit) != 0;
     }
-    return support < least_support;
+    return support < min_support;
   });
 }
 
@@ -153,9 +153,9 @@ void BurstWindow::fill(const BurstHistory& history, std::int64_t middle_ns, doub
 }
 
 void BurstWindow::fillSupported(const BurstHistory& history, std::int64_t middle_ns, double half_window_s,
-                                int least_support) {
+                                int min_support) {
   gather(history, middle_ns, half_window_s);
-  keepSupported(resolution_px_, least_support, gathered_);
+  keepSupported(resolution_px_, min_support, gathered_);
   assign(gathered_, middle_ns);
 }
 

@@ -43,9 +43,9 @@ class BurstHistory {
   std::vector<std::vector<EdgeCrossing>> spare_;  // memory of dropped slices, for new ones
 };
 
-// Drops isolated bursts: fewer than `least_support` of their kind in a 3x3 neighbourhood, themselves
+// Drops isolated bursts: fewer than `min_support` of their kind in a 3x3 neighbourhood, themselves
 // included.
-void keepSupported(Resolution resolution_px, int least_support, std::vector<EdgeCrossing>& bursts);
+void keepSupported(Resolution resolution_px, int min_support, std::vector<EdgeCrossing>& bursts);
 
 // A burst in a window. Pixels are the sensor's; ideal pixels as in camera_model.h (equal to the sensor's for
 // an unknown camera).
@@ -70,7 +70,7 @@ class BurstWindow {
   void fill(const BurstHistory& history, std::int64_t middle_ns, double half_window_s);
   // The same without isolated bursts (keepSupported).
   void fillSupported(const BurstHistory& history, std::int64_t middle_ns, double half_window_s,
-                     int least_support);
+                     int min_support);
 
   const std::vector<WindowBurst>& bursts() const { return bursts_; }
   Resolution resolution_px() const { return resolution_px_; }

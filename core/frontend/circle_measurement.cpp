@@ -29,9 +29,9 @@ void gatherEdgePoints(const BurstWindow& window, const CircleImage& circle, cons
   const Eigen::Vector2d velocity = motion.velocityAt(circle.centre_px);
   const Eigen::Vector2d acceleration = motion.accelerationAt(circle.centre_px);
   const double speed = velocity.norm() + 0.5 * half_slot_s * acceleration.norm();
-  const double sensor_scale = circle.sensor_radius_px / circle.largest_radius_px;
+  const double sensor_scale = circle.sensor_radius_px / circle.max_radius_px;
   // Limit of gates: the fit's last gate plus the largest deviation of a circle from the board's fit.
-  const double gate_px = options.last_gate_px + 0.5 * options.largest_centre_shift_px;
+  const double gate_px = options.last_gate_px + 0.5 * options.max_centre_shift_px;
   const double reach = circle.sensor_radius_px + gate_px + speed * half_slot_s * sensor_scale;
   const Eigen::Vector2d& middle = circle.sensor_centre_px;
   const auto visit = [&](std::uint32_t i) {
@@ -96,7 +96,7 @@ CentreFit fitCentre(CircleImage circle, const BoardMotion& motion, const Trackin
       fit.inliers += std::abs(r) < options.robust_scale_px;
       fit.sectors |= 1u << outlineSector(edge.normal);
     }
-    if (fit.points < options.least_circle_bursts) return fit;
+    if (fit.points < options.min_circle_bursts) return fit;
     const Eigen::LDLT<Eigen::Matrix3d> solver(matrix);
     fit.shift += solver.solve(vector);
     fit.by_lead = solver.solve(by_lead);
@@ -118,7 +118,7 @@ CircleObservation observation(const CircleImage& circle, const CentreFit& fit, c
   out.covariance_px2 = noise2 * fit.information.inverse().topLeftCorner<2, 2>();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(circle.shape);
   const double outside_px =
-      (motion.radius_offset_px + fit.shift.z()) * circle.largest_radius_px / circle.sensor_radius_px;
+      (motion.radius_offset_px + fit.shift.z()) * circle.max_radius_px / circle.sensor_radius_px;
   out.semi_axes_px = eigen.eigenvalues().cwiseSqrt().cwiseInverse().array() +
                      outside_px;  // ascending shape: major axis first
   out.angle_rad = std::atan2(eigen.eigenvectors()(1, 0), eigen.eigenvectors()(0, 0));
@@ -129,12 +129,11 @@ CircleObservation observation(const CircleImage& circle, const CentreFit& fit, c
 
 CircleVerdict judge(const CircleImage& circle, const CentreFit& fit, std::size_t points,
                     const TrackingOptions& options) {
-  if (fit.points < options.least_circle_bursts) return CircleVerdict::TooFewBursts;
-  if (fit.inliers < options.least_inliers * static_cast<double>(points)) return CircleVerdict::TooFewInliers;
-  if (std::popcount(fit.sectors) < options.least_arc * kOutlineSectors) return CircleVerdict::TooShortArc;
-  const double scale = circle.largest_radius_px / circle.sensor_radius_px;
-  if (!(fit.shift.head<2>().norm() < options.largest_centre_shift_px * scale))
-    return CircleVerdict::OffTheBoard;
+  if (fit.points < options.min_circle_bursts) return CircleVerdict::TooFewBursts;
+  if (fit.inliers < options.min_inliers * static_cast<double>(points)) return CircleVerdict::TooFewInliers;
+  if (std::popcount(fit.sectors) < options.min_arc * kOutlineSectors) return CircleVerdict::TooShortArc;
+  const double scale = circle.max_radius_px / circle.sensor_radius_px;
+  if (!(fit.shift.head<2>().norm() < options.max_centre_shift_px * scale)) return CircleVerdict::OffTheBoard;
   return CircleVerdict::Measured;
 }
 
@@ -148,15 +147,15 @@ class CircleMeter {
   CircleVerdict measure(const CircleImage& circle, CircleObservation& out) {
     if (!insideImage(circle, window_.resolution_px())) return CircleVerdict::OutsideImage;
     gatherEdgePoints(window_, circle, motion_, slot_.half_s, options_, points_);
-    if (static_cast<int>(points_.size()) < options_.least_circle_bursts) return CircleVerdict::TooFewBursts;
+    if (static_cast<int>(points_.size()) < options_.min_circle_bursts) return CircleVerdict::TooFewBursts;
     const CentreFit fit = fitCentre(circle, motion_, options_, points_);
     const CircleVerdict verdict = judge(circle, fit, points_.size(), options_);
     if (verdict != CircleVerdict::Measured) return verdict;
     // Scatter of the whole window: a dozen points of one circle do not determine their noise.
     const double noise2 = std::max(motion_.residual_rms_px * motion_.residual_rms_px, 1e-3);
     out = observation(circle, fit, motion_, noise2, slot_.start_ns);
-    const double scale = circle.largest_radius_px / circle.sensor_radius_px;
-    const double largest_variance = options_.largest_centre_sigma_px * options_.largest_centre_sigma_px;
+    const double scale = circle.max_radius_px / circle.sensor_radius_px;
+    const double largest_variance = options_.max_centre_sigma_px * options_.max_centre_sigma_px;
     return out.covariance_px2.trace() < 2.0 * largest_variance * scale * scale ? verdict
                                                                                : CircleVerdict::TooUnsure;
   }

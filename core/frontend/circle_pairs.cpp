@@ -101,8 +101,8 @@ std::optional<CircleCandidate> circleOf(const EventCluster& leading, const Event
   if (!(velocity.norm() > 1e-6)) return std::nullopt;
   const Eigen::Vector2d middle = 0.5 * (leading.centroid_px + trailing.centroid_px);
   std::optional<CircleCandidate> circle = fitCircle(flows, middle, velocity);
-  if (!circle || circle->radius_px < options.detection.smallest_radius_px ||
-      circle->radius_px > options.detection.largest_radius_px)
+  if (!circle || circle->radius_px < options.detection.min_radius_px ||
+      circle->radius_px > options.detection.max_radius_px)
     return std::nullopt;
   return circle;
 }
@@ -120,10 +120,10 @@ struct Partner {
 };
 
 bool moveAlike(const EventCluster& leading, const EventCluster& trailing, const FrontEndOptions& options) {
-  const double cosine = std::cos(options.normal_flow.largest_pair_angle_deg * kRadPerDeg);
+  const double cosine = std::cos(options.normal_flow.max_pair_angle_deg * kRadPerDeg);
   const Eigen::Vector2d line = leading.centroid_px - trailing.centroid_px;
   const double length = line.norm();
-  return length > 0.0 && length <= 2.0 * options.detection.largest_radius_px &&
+  return length > 0.0 && length <= 2.0 * options.detection.max_radius_px &&
          leading.direction.dot(trailing.direction) >= cosine &&
          leading.direction.dot(line) >= cosine * length && trailing.direction.dot(line) >= cosine * length;
 }

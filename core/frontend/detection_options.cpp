@@ -5,17 +5,16 @@
 namespace evical {
 namespace {
 
-constexpr std::tuple kBurstFields{
-    Field{"least_events", &BurstOptions::least_events, 2, within(1, 20), "",
-          "Smallest number of events of an edge at a pixel."},
-    Field{"longest_gap_s", &BurstOptions::longest_gap_s, 0.15, within(1e-3, 1.0), "s",
-          "Longest pause between events of a burst."},
-    Field{"shortest_gap_s", &BurstOptions::shortest_gap_s, 0.004, within(0.0, 0.1), "s",
-          "Pause up to which events always belong to the same burst."},
-    Field{"gap_to_pace", &BurstOptions::gap_to_pace, 6.0, within(1.5, 100.0), "",
-          "Pause that ends a burst, in mean intervals of the burst."},
-    Field{"longest_burst_s", &BurstOptions::longest_burst_s, 1.0, within(1e-2, 1.0), "s",
-          "Longest burst; longer ones are split."}};
+constexpr std::tuple kBurstFields{Field{"min_events", &BurstOptions::min_events, 2, within(1, 20), "",
+                                        "Smallest number of events of an edge at a pixel."},
+                                  Field{"max_gap_s", &BurstOptions::max_gap_s, 0.15, within(1e-3, 1.0), "s",
+                                        "Longest pause between events of a burst."},
+                                  Field{"min_gap_s", &BurstOptions::min_gap_s, 0.004, within(0.0, 0.1), "s",
+                                        "Pause up to which events always belong to the same burst."},
+                                  Field{"gap_to_pace", &BurstOptions::gap_to_pace, 6.0, within(1.5, 100.0),
+                                        "", "Pause that ends a burst, in mean intervals of the burst."},
+                                  Field{"max_burst_s", &BurstOptions::max_burst_s, 1.0, within(1e-2, 1.0),
+                                        "s", "Longest burst; longer ones are split."}};
 constexpr auto kBurstDefaults = defaultsOf<BurstOptions, kBurstFields>();
 
 constexpr std::tuple kDetectionFields{
@@ -27,23 +26,22 @@ constexpr std::tuple kDetectionFields{
            Level::Expert},
     Field{"window_travel_px", &DetectionOptions::window_travel_px, 2.5, within(0.5, 20.0), "px",
           "Distance that the board's edges travel in one event window, approximately.", Level::Expert},
-    Field{"shortest_window_s", &DetectionOptions::shortest_window_s, 0.005, within(1e-3, 0.1), "s",
+    Field{"min_window_s", &DetectionOptions::min_window_s, 0.005, within(1e-3, 0.1), "s",
           "Shortest event window.", Level::Expert},
-    Field{"longest_window_s", &DetectionOptions::longest_window_s, 0.05, within(5e-3, 0.2), "s",
+    Field{"max_window_s", &DetectionOptions::max_window_s, 0.05, within(5e-3, 0.2), "s",
           "Longest event window.", Level::Expert},
     Field{"search_interval_s", &DetectionOptions::search_interval_s, 0.05, within(0.0, 2.0), "s",
           "Interval of searches in the whole image while the board is lost."},
-    Field{"longest_search_interval_s", &DetectionOptions::longest_search_interval_s, 0.5, within(0.0, 10.0),
-          "s",
+    Field{"max_search_interval_s", &DetectionOptions::max_search_interval_s, 0.5, within(0.0, 10.0), "s",
           "Longest interval of searches; it grows while they fail. Windows in between are tracked backwards "
           "within history_s."},
     Field{"history_s", &DetectionOptions::history_s, 2.0, within(0.0, 30.0), "s",
           "Time over which a detected board is tracked backwards."},
-    Field{"least_window_bursts", &DetectionOptions::least_window_bursts, 60, within(1, 100000), "",
+    Field{"min_window_bursts", &DetectionOptions::min_window_bursts, 60, within(1, 100000), "",
           "Smallest number of edge bursts in an event window; others are skipped."},
-    Field{"smallest_radius_px", &DetectionOptions::smallest_radius_px, 2.5, within(1.0, 100.0), "px",
+    Field{"min_radius_px", &DetectionOptions::min_radius_px, 2.5, within(1.0, 100.0), "px",
           "Radius of the smallest circle in a search.", Level::Expert},
-    Field{"largest_radius_px", &DetectionOptions::largest_radius_px, 80.0, within(3.0, 500.0), "px",
+    Field{"max_radius_px", &DetectionOptions::max_radius_px, 80.0, within(3.0, 500.0), "px",
           "Radius of the largest circle in a search.", Level::Expert}};
 constexpr auto kDetectionDefaults = defaultsOf<DetectionOptions, kDetectionFields>();
 
@@ -52,12 +50,12 @@ constexpr std::tuple kRingVoteFields{
           "Ratio of consecutive radii in the search."},
     Field{"ring_half_width_px", &RingVoteOptions::ring_half_width_px, 0.75, within(0.3, 3.0), "px",
           "Half the thickness of the ring of votes."},
-    Field{"least_score", &RingVoteOptions::least_score, 0.18, within(0.02, 1.0), "",
+    Field{"min_score", &RingVoteOptions::min_score, 0.18, within(0.02, 1.0), "",
           "Smallest signed vote of a candidate, relative to the ring's area."},
-    Field{"least_support", &RingVoteOptions::least_support, 3, within(1, 9), "",
+    Field{"min_support", &RingVoteOptions::min_support, 3, within(1, 9), "",
           "Smallest number of bursts of one polarity in the 3x3 neighbourhood of a voting burst, itself "
           "included."},
-    Field{"most_candidates", &RingVoteOptions::most_candidates, 1500, within(10, 5000), "",
+    Field{"max_candidates", &RingVoteOptions::max_candidates, 1500, within(10, 5000), "",
           "Largest number of fitted candidates, best first."},
     Field{"window_travel_px", &RingVoteOptions::window_travel_px, 2.5, within(0.5, 20.0), "px",
           "Distance that edges travel in a searched window, approximately."}};
@@ -70,39 +68,39 @@ constexpr std::tuple kMovingCircleFields{
           "Largest distance of fitted bursts from the edge, last iteration."},
     Field{"robust_scale_px", &MovingCircleOptions::robust_scale_px, 0.5, within(0.05, 5.0), "px",
           "Scale of the Cauchy weight."},
-    Field{"largest_rms_px", &MovingCircleOptions::largest_rms_px, 0.8, within(0.1, 5.0), "px",
+    Field{"max_rms_px", &MovingCircleOptions::max_rms_px, 0.8, within(0.1, 5.0), "px",
           "Largest residual RMS of an accepted fit."},
-    Field{"least_bins", &MovingCircleOptions::least_bins, 8, within(1, 16), "",
+    Field{"min_bins", &MovingCircleOptions::min_bins, 8, within(1, 16), "",
           "Smallest number of the outline's 16 sectors with bursts."},
-    Field{"least_bursts_per_polarity", &MovingCircleOptions::least_bursts_per_polarity, 4, within(0, 1000),
-          "", "Smallest number of bursts on the leading and on the trailing arc."},
-    Field{"least_polarity_cosine", &MovingCircleOptions::least_polarity_cosine, -0.2, within(-1.0, 1.0), "",
+    Field{"min_bursts_per_polarity", &MovingCircleOptions::min_bursts_per_polarity, 4, within(0, 1000), "",
+          "Smallest number of bursts on the leading and on the trailing arc."},
+    Field{"min_polarity_cosine", &MovingCircleOptions::min_polarity_cosine, -0.2, within(-1.0, 1.0), "",
           "Smallest cosine between normal and motion for the burst's polarity; other bursts are excluded."},
     Field{"iterations", &MovingCircleOptions::iterations, 8, within(1, 50), "",
           "Gauss-Newton iterations of the fit."}};
 constexpr auto kMovingCircleDefaults = defaultsOf<MovingCircleOptions, kMovingCircleFields>();
 
 constexpr std::tuple kGridFields{
-    Field{"shortest_step_radii", &GridOptions::shortest_step_radii, 2.2, within(2.0, 20.0), "radii",
+    Field{"min_step_radii", &GridOptions::min_step_radii, 2.2, within(2.0, 20.0), "radii",
           "Smallest distance of neighbours, in circle radii."},
-    Field{"longest_step_radii", &GridOptions::longest_step_radii, 5.0, within(2.1, 40.0), "radii",
+    Field{"max_step_radii", &GridOptions::max_step_radii, 5.0, within(2.1, 40.0), "radii",
           "Largest distance of neighbours, in circle radii."},
-    Field{"largest_radius_ratio", &GridOptions::largest_radius_ratio, 1.54, within(1.05, 4.0), "",
+    Field{"max_radius_ratio", &GridOptions::max_radius_ratio, 1.54, within(1.05, 4.0), "",
           "Largest ratio of the radii of neighbours."},
     Field{"step_tolerance", &GridOptions::step_tolerance, 0.22, within(0.05, 0.45), "steps",
           "Largest deviation of a neighbour from its predicted place."},
-    Field{"least_sine", &GridOptions::least_sine, 0.6, within(0.1, 1.0), "",
+    Field{"min_sine", &GridOptions::min_sine, 0.6, within(0.1, 1.0), "",
           "Smallest sine of the angle between a lattice's two directions."},
-    Field{"least_partial", &GridOptions::least_partial, 0.4, within(0.1, 1.0), "",
+    Field{"min_partial", &GridOptions::min_partial, 0.4, within(0.1, 1.0), "",
           "Smallest share of the circles in a partial grid.", Level::Expert},
-    Field{"least_circles", &GridOptions::least_circles, 6, within(4, 1000), "",
+    Field{"min_circles", &GridOptions::min_circles, 6, within(4, 1000), "",
           "Smallest number of circles in a grid.", Level::Expert},
     Field{"ambiguity_margin", &GridOptions::ambiguity_margin, 2, within(0, 100), "",
           "Number of circles by which a partial grid's placement must exceed the second-best one."},
-    Field{"least_rival_overlap", &GridOptions::least_rival_overlap, 0.5, within(0.1, 1.0), "",
+    Field{"min_rival_overlap", &GridOptions::min_rival_overlap, 0.5, within(0.1, 1.0), "",
           "Smallest overlap of rival placements that are compared with the accepted one, as a share of the "
           "circles."},
-    Field{"most_missing", &GridOptions::most_missing, 0.2, within(0.0, 1.0), "",
+    Field{"max_missing", &GridOptions::max_missing, 0.2, within(0.0, 1.0), "",
           "Largest ratio of missing to detected circles for an accepted board."},
     Field{"look_every_windows", &GridOptions::look_every_windows, 10, within(1, 10000), "",
           "Interval of placement checks after confirmation, in tracked windows; every window is checked "
@@ -114,8 +112,8 @@ constexpr auto kGridDefaults = defaultsOf<GridOptions, kGridFields>();
 constexpr std::tuple kTrackingFields{
     Field{"fit_travel_px", &TrackingOptions::fit_travel_px, 3.0, within(0.5, 20.0), "px",
           "Distance that edges travel within the window of the motion fit."},
-    Field{"longest_fit_half_window_s", &TrackingOptions::longest_fit_half_window_s, 0.06, within(1e-3, 0.5),
-          "s", "Longest half window of the motion fit."},
+    Field{"max_fit_half_window_s", &TrackingOptions::max_fit_half_window_s, 0.06, within(1e-3, 0.5), "s",
+          "Longest half window of the motion fit."},
     Field{"first_gate_px", &TrackingOptions::first_gate_px, 3.0, within(0.5, 20.0), "px",
           "Largest distance of fitted bursts from an edge, first iteration."},
     Field{"last_gate_px", &TrackingOptions::last_gate_px, 1.0, within(0.3, 20.0), "px",
@@ -126,24 +124,24 @@ constexpr std::tuple kTrackingFields{
           "Scale of the Cauchy weight."},
     Field{"iterations", &TrackingOptions::iterations, 8, within(2, 50), "",
           "Gauss-Newton iterations of the joint fit."},
-    Field{"least_polarity_cosine", &TrackingOptions::least_polarity_cosine, 0.35, within(0.0, 1.0), "",
+    Field{"min_polarity_cosine", &TrackingOptions::min_polarity_cosine, 0.35, within(0.0, 1.0), "",
           "Smallest cosine between edge normal and motion; other edges graze pixels and are excluded."},
     Field{"full_polarity_cosine", &TrackingOptions::full_polarity_cosine, 0.7, within(0.0, 1.0), "",
           "Smallest cosine between edge normal and motion at which an edge has its full weight."},
-    Field{"least_event_part", &TrackingOptions::least_event_part, 0.8, within(0.0, 1.0), "",
+    Field{"min_event_part", &TrackingOptions::min_event_part, 0.8, within(0.0, 1.0), "",
           "Smallest number of events relative to a typical burst; other bursts are of edges that graze the "
           "pixel, and excluded."},
     Field{"full_event_part", &TrackingOptions::full_event_part, 1.0, within(0.0, 1.0), "",
           "Smallest number of events relative to a typical burst at which a burst has its full weight."},
-    Field{"least_arc", &TrackingOptions::least_arc, 0.25, within(0.05, 1.0), "",
+    Field{"min_arc", &TrackingOptions::min_arc, 0.25, within(0.05, 1.0), "",
           "Smallest share of a circle's 16 sectors with bursts."},
-    Field{"least_circle_bursts", &TrackingOptions::least_circle_bursts, 8, within(3, 1000), "",
+    Field{"min_circle_bursts", &TrackingOptions::min_circle_bursts, 8, within(3, 1000), "",
           "Smallest number of bursts of a circle."},
-    Field{"least_inliers", &TrackingOptions::least_inliers, 0.6, within(0.0, 1.0), "",
+    Field{"min_inliers", &TrackingOptions::min_inliers, 0.6, within(0.0, 1.0), "",
           "Smallest share of inliers among the bursts around a circle's edge, within the robust scale."},
-    Field{"largest_centre_sigma_px", &TrackingOptions::largest_centre_sigma_px, 0.5, within(0.05, 5.0), "px",
+    Field{"max_centre_sigma_px", &TrackingOptions::max_centre_sigma_px, 0.5, within(0.05, 5.0), "px",
           "Largest sigma of a circle's centre; other circles are excluded."},
-    Field{"largest_centre_shift_px", &TrackingOptions::largest_centre_shift_px, 1.5, within(0.2, 10.0), "px",
+    Field{"max_centre_shift_px", &TrackingOptions::max_centre_shift_px, 1.5, within(0.2, 10.0), "px",
           "Largest distance of a circle from the board's fit; other circles are excluded."},
     Field{"radius_offset_sigma_px", &TrackingOptions::radius_offset_sigma_px, 0.15, within(0.01, 2.0), "px",
           "Prior sigma of one circle's radius offset relative to that of all circles."},
@@ -153,7 +151,7 @@ constexpr std::tuple kTrackingFields{
           "Prior sigma of the predicted velocity."},
     Field{"acceleration_sigma_px_s2", &TrackingOptions::acceleration_sigma_px_s2, 1500.0, within(1.0, 1e6),
           "px/s^2", "Prior sigma of accelerations."},
-    Field{"longest_gap_s", &TrackingOptions::longest_gap_s, 0.3, within(0.0, 5.0), "s",
+    Field{"max_gap_s", &TrackingOptions::max_gap_s, 0.3, within(0.0, 5.0), "s",
           "Time over which a lost board is predicted before it is searched again."}};
 constexpr auto kTrackingDefaults = defaultsOf<TrackingOptions, kTrackingFields>();
 
@@ -161,22 +159,22 @@ constexpr std::tuple kExtentFields{
     Field{"every_windows", &ExtentOptions::every_windows, 5, within(1, 1000), "",
           "Interval of the checks, in tracked windows."},
     Field{
-        "least_line", &ExtentOptions::least_line, 0.6, within(0.3, 1.0), "",
+        "min_line", &ExtentOptions::min_line, 0.6, within(0.3, 1.0), "",
         "Smallest share of a row or column in the image for a check, and smallest share of detected circles "
         "in it."},
-    Field{"least_line_beyond", &ExtentOptions::least_line_beyond, 0.75, within(0.3, 1.0), "",
+    Field{"min_line_beyond", &ExtentOptions::min_line_beyond, 0.75, within(0.3, 1.0), "",
           "The same shares of a row or column beyond the board: discs of the background can look like a part "
           "of one."},
-    Field{"least_circles_beyond", &ExtentOptions::least_circles_beyond, 3, within(2, 100), "",
+    Field{"min_circles_beyond", &ExtentOptions::min_circles_beyond, 3, within(2, 100), "",
           "Smallest number of circles of such a line, if it has as many."},
     Field{"alike_sigmas", &ExtentOptions::alike_sigmas, 4.0, within(1.0, 100.0), "sigma",
           "Largest deviation of such a circle from its place and size, in units of the spread of the board's "
           "own circles."},
-    Field{"least_sigma_px", &ExtentOptions::least_sigma_px, 0.1, within(0.0, 10.0), "px",
+    Field{"min_sigma_px", &ExtentOptions::min_sigma_px, 0.1, within(0.0, 10.0), "px",
           "Smallest value of that spread."},
-    Field{"least_views", &ExtentOptions::least_views, 15, within(1, 100000), "",
+    Field{"min_views", &ExtentOptions::min_views, 15, within(1, 100000), "",
           "Smallest number of checked views for a report."},
-    Field{"largest_share", &ExtentOptions::largest_share, 0.25, within(0.0, 1.0), "",
+    Field{"max_share", &ExtentOptions::max_share, 0.25, within(0.0, 1.0), "",
           "Largest share of views that may contradict the session's rows or columns."}};
 constexpr auto kExtentDefaults = defaultsOf<ExtentOptions, kExtentFields>();
 
@@ -185,8 +183,8 @@ constexpr auto kExtentDefaults = defaultsOf<ExtentOptions, kExtentFields>();
 BurstOptions::BurstOptions() : BurstOptions(kBurstDefaults) {}
 
 const OptionTable<BurstOptions>& BurstOptions::table() {
-  static const OptionTable<BurstOptions> table(
-      kBurstFields, Ordered{&BurstOptions::shortest_gap_s, &BurstOptions::longest_gap_s});
+  static const OptionTable<BurstOptions> table(kBurstFields,
+                                               Ordered{&BurstOptions::min_gap_s, &BurstOptions::max_gap_s});
   return table;
 }
 
@@ -194,9 +192,9 @@ DetectionOptions::DetectionOptions() : DetectionOptions(kDetectionDefaults) {}
 
 const OptionTable<DetectionOptions>& DetectionOptions::table() {
   static const OptionTable<DetectionOptions> table(
-      kDetectionFields, Ordered{&DetectionOptions::shortest_window_s, &DetectionOptions::longest_window_s},
-      Ordered{&DetectionOptions::search_interval_s, &DetectionOptions::longest_search_interval_s},
-      Ordered{&DetectionOptions::smallest_radius_px, &DetectionOptions::largest_radius_px});
+      kDetectionFields, Ordered{&DetectionOptions::min_window_s, &DetectionOptions::max_window_s},
+      Ordered{&DetectionOptions::search_interval_s, &DetectionOptions::max_search_interval_s},
+      Ordered{&DetectionOptions::min_radius_px, &DetectionOptions::max_radius_px});
   return table;
 }
 
@@ -219,7 +217,7 @@ GridOptions::GridOptions() : GridOptions(kGridDefaults) {}
 
 const OptionTable<GridOptions>& GridOptions::table() {
   static const OptionTable<GridOptions> table(
-      kGridFields, Ordered{&GridOptions::shortest_step_radii, &GridOptions::longest_step_radii});
+      kGridFields, Ordered{&GridOptions::min_step_radii, &GridOptions::max_step_radii});
   return table;
 }
 
@@ -228,8 +226,8 @@ TrackingOptions::TrackingOptions() : TrackingOptions(kTrackingDefaults) {}
 const OptionTable<TrackingOptions>& TrackingOptions::table() {
   static const OptionTable<TrackingOptions> table(
       kTrackingFields, Ordered{&TrackingOptions::last_gate_px, &TrackingOptions::first_gate_px},
-      Ordered{&TrackingOptions::least_polarity_cosine, &TrackingOptions::full_polarity_cosine},
-      Ordered{&TrackingOptions::least_event_part, &TrackingOptions::full_event_part});
+      Ordered{&TrackingOptions::min_polarity_cosine, &TrackingOptions::full_polarity_cosine},
+      Ordered{&TrackingOptions::min_event_part, &TrackingOptions::full_event_part});
   return table;
 }
 
@@ -245,18 +243,18 @@ namespace {
 constexpr std::tuple kNormalFlowFields{
     Field{"plane_radius_px", &NormalFlowOptions::plane_radius_px, 1, within(1, 5), "px",
           "Half width of the neighbourhood of the plane fit."},
-    Field{"largest_plane_error_px", &NormalFlowOptions::largest_plane_error_px, 0.6, within(0.05, 5.0), "px",
+    Field{"max_plane_error_px", &NormalFlowOptions::max_plane_error_px, 0.6, within(0.05, 5.0), "px",
           "Largest deviation of a neighbour from the plane, as a distance that the edge travels."},
-    Field{"least_plane_inliers", &NormalFlowOptions::least_plane_inliers, 0.5, within(0.2, 1.0), "",
+    Field{"min_plane_inliers", &NormalFlowOptions::min_plane_inliers, 0.5, within(0.2, 1.0), "",
           "Smallest share of inliers in the neighbourhood."},
     Field{"fastest_px_s", &NormalFlowOptions::fastest_px_s, 4000.0, within(10.0, 1e6), "px/s",
           "Largest speed of edges; faster ones are noise."},
     Field{"dilation_px", &NormalFlowOptions::dilation_px, 1, within(0, 5), "px",
           "Dilation of flow pixels; pixels that touch after it are one cluster."},
-    Field{"least_cluster_px", &NormalFlowOptions::least_cluster_px, 10, within(3, 10000), "px",
+    Field{"min_cluster_px", &NormalFlowOptions::min_cluster_px, 10, within(3, 10000), "px",
           "Smallest number of pixels in a cluster."},
-    Field{"largest_pair_angle_deg", &NormalFlowOptions::largest_pair_angle_deg, 30.0, within(1.0, 90.0),
-          "deg", "Largest angle between the directions of two paired arcs, and to the line that joins them."},
+    Field{"max_pair_angle_deg", &NormalFlowOptions::max_pair_angle_deg, 30.0, within(1.0, 90.0), "deg",
+          "Largest angle between the directions of two paired arcs, and to the line that joins them."},
     Field{"window_travel_px", &NormalFlowOptions::window_travel_px, 3.5, within(0.5, 20.0), "px",
           "Distance that edges travel in a searched window, approximately."}};
 constexpr auto kNormalFlowDefaults = defaultsOf<NormalFlowOptions, kNormalFlowFields>();

@@ -7,11 +7,11 @@ namespace evical {
 
 // Edge timing (docs/maths.md, 4).
 struct BurstOptions {
-  int least_events;
-  double longest_gap_s;
-  double shortest_gap_s;
+  int min_events;
+  double max_gap_s;
+  double min_gap_s;
   double gap_to_pace;
-  double longest_burst_s;
+  double max_burst_s;
 
   BurstOptions();  // the defaults
   constexpr explicit BurstOptions(NoDefaults) {}
@@ -26,14 +26,14 @@ struct DetectionOptions {
   CandidateSource method;
   bool try_both;
   double window_travel_px;
-  double shortest_window_s;
-  double longest_window_s;
+  double min_window_s;
+  double max_window_s;
   double search_interval_s;
-  double longest_search_interval_s;
+  double max_search_interval_s;
   double history_s;
-  int least_window_bursts;
-  double smallest_radius_px;
-  double largest_radius_px;
+  int min_window_bursts;
+  double min_radius_px;
+  double max_radius_px;
 
   DetectionOptions();  // the defaults
   constexpr explicit DetectionOptions(NoDefaults) {}
@@ -45,9 +45,9 @@ struct DetectionOptions {
 struct RingVoteOptions {
   double radius_step;
   double ring_half_width_px;
-  double least_score;
-  int least_support;
-  int most_candidates;
+  double min_score;
+  int min_support;
+  int max_candidates;
   double window_travel_px;
 
   RingVoteOptions();  // the defaults
@@ -61,10 +61,10 @@ struct MovingCircleOptions {
   double first_gate_px;
   double last_gate_px;
   double robust_scale_px;
-  double largest_rms_px;
-  int least_bins;
-  int least_bursts_per_polarity;
-  double least_polarity_cosine;
+  double max_rms_px;
+  int min_bins;
+  int min_bursts_per_polarity;
+  double min_polarity_cosine;
   int iterations;
 
   MovingCircleOptions();  // the defaults
@@ -75,16 +75,16 @@ struct MovingCircleOptions {
 
 // From circles to the board (docs/maths.md, 5.4).
 struct GridOptions {
-  double shortest_step_radii;
-  double longest_step_radii;
-  double largest_radius_ratio;
+  double min_step_radii;
+  double max_step_radii;
+  double max_radius_ratio;
   double step_tolerance;
-  double least_sine;
-  double least_partial;
-  int least_circles;
+  double min_sine;
+  double min_partial;
+  int min_circles;
   int ambiguity_margin;
-  double most_missing;
-  double least_rival_overlap;
+  double max_missing;
+  double min_rival_overlap;
   int look_every_windows;
   int contradicting_looks;
 
@@ -97,26 +97,26 @@ struct GridOptions {
 // Joint fit of all circles in a window, and tracking from window to window.
 struct TrackingOptions {
   double fit_travel_px;
-  double longest_fit_half_window_s;
+  double max_fit_half_window_s;
   double first_gate_px;
   double last_gate_px;
   double gate_ratio;
   double robust_scale_px;
   int iterations;
-  double least_polarity_cosine;
+  double min_polarity_cosine;
   double full_polarity_cosine;
-  double least_event_part;
+  double min_event_part;
   double full_event_part;
-  double least_arc;
-  int least_circle_bursts;
-  double least_inliers;
-  double largest_centre_sigma_px;
-  double largest_centre_shift_px;
+  double min_arc;
+  int min_circle_bursts;
+  double min_inliers;
+  double max_centre_sigma_px;
+  double max_centre_shift_px;
   double radius_offset_sigma_px;
   double prediction_sigma_px;
   double velocity_sigma_px_s;
   double acceleration_sigma_px_s2;
-  double longest_gap_s;
+  double max_gap_s;
 
   TrackingOptions();  // the defaults
   constexpr explicit TrackingOptions(NoDefaults) {}
@@ -127,13 +127,13 @@ struct TrackingOptions {
 // Check of the board's rows and columns against the session.
 struct ExtentOptions {
   int every_windows;
-  double least_line;
-  double least_line_beyond;
-  int least_circles_beyond;
+  double min_line;
+  double min_line_beyond;
+  int min_circles_beyond;
   double alike_sigmas;
-  double least_sigma_px;
-  int least_views;
-  double largest_share;
+  double min_sigma_px;
+  int min_views;
+  double max_share;
 
   ExtentOptions();  // the defaults
   constexpr explicit ExtentOptions(NoDefaults) {}
@@ -145,12 +145,12 @@ struct ExtentOptions {
 
 struct NormalFlowOptions {
   int plane_radius_px;
-  double largest_plane_error_px;
-  double least_plane_inliers;
+  double max_plane_error_px;
+  double min_plane_inliers;
   double fastest_px_s;
   int dilation_px;
-  int least_cluster_px;
-  double largest_pair_angle_deg;
+  int min_cluster_px;
+  double max_pair_angle_deg;
   double window_travel_px;
 
   NormalFlowOptions();  // the defaults

@@ -65,19 +65,18 @@ bool isRest(std::int64_t pause_ns, std::int64_t half_crossing_ns) {
 
 // Sum of the burst's length, one rest or gap, and one check interval that may have just begun.
 double longestHandOut_s(const BurstOptions& options) {
-  return options.longest_burst_s + std::max(kLongestRest_s, options.longest_gap_s) +
-         2.0 * options.longest_gap_s;
+  return options.max_burst_s + std::max(kLongestRest_s, options.max_gap_s) + 2.0 * options.max_gap_s;
 }
 
 BurstExtractor::BurstExtractor(Resolution resolution_px, const BurstOptions& options)
     : resolution_px_(resolution_px),
-      longest_gap_ns_(nanosecondsFrom(options.longest_gap_s)),
-      shortest_gap_ns_(nanosecondsFrom(options.shortest_gap_s)),
-      longest_burst_ns_(nanosecondsFrom(options.longest_burst_s)),
+      longest_gap_ns_(nanosecondsFrom(options.max_gap_s)),
+      shortest_gap_ns_(nanosecondsFrom(options.min_gap_s)),
+      longest_burst_ns_(nanosecondsFrom(options.max_burst_s)),
       check_interval_ns_(longest_gap_ns_),
       hand_out_ns_(nanosecondsFrom(longestHandOut_s(options))),
       gap_to_pace_(options.gap_to_pace),
-      least_events_(options.least_events),
+      min_events_(options.min_events),
       pixels_(static_cast<std::size_t>(resolution_px.pixelCount())),
       times_ns_(pixels_.size(), KeptTimes{}),
       complete_until_ns_(std::numeric_limits<std::int64_t>::min()) {}
@@ -144,7 +143,7 @@ std::int64_t BurstExtractor::Burst::timeOf_ns(double kept_event) const {
 
 void BurstExtractor::end(std::uint32_t index, std::int64_t now_ns, std::vector<EdgeCrossing>& bursts) {
   Pixel& pixel = pixels_[index];
-  if (pixel.events < least_events_) {
+  if (pixel.events < min_events_) {
     if (!pausedAt(pixel, now_ns)) pixel.level.step(pixel.brighter, pixel.events);
     return;
   }
@@ -238,10 +237,10 @@ void PolarityDelayFit::add(double speed_px_s, double radius_offset_px) {
 }
 
 std::optional<PolarityDelay> PolarityDelayFit::result(CircleShade shade) const {
-  constexpr double kLeastWindows = 20.0, kLeastSpread_px_s = 5.0;
-  if (count_ < kLeastWindows) return std::nullopt;
+  constexpr double kMinWindows = 20.0, kMinSpread_px_s = 5.0;
+  if (count_ < kMinWindows) return std::nullopt;
   const double spread = speed2_ - speed_ * speed_ / count_;
-  if (!(spread > count_ * kLeastSpread_px_s * kLeastSpread_px_s)) return std::nullopt;
+  if (!(spread > count_ * kMinSpread_px_s * kMinSpread_px_s)) return std::nullopt;
   const double slope_s = (product_ - speed_ * offset_ / count_) / spread;
   const double scatter2 = std::max(0.0, offset2_ - offset_ * offset_ / count_ - slope_s * slope_s * spread);
   const double sigma_s = std::sqrt(scatter2 / ((count_ - 2.0) * spread));

@@ -127,7 +127,7 @@ class BurstExtractor {
   Resolution resolution_px_;
   std::int64_t longest_gap_ns_, shortest_gap_ns_, longest_burst_ns_, check_interval_ns_, hand_out_ns_;
   double gap_to_pace_;
-  int least_events_;
+  int min_events_;
   std::vector<Pixel> pixels_;
   std::vector<KeptTimes> times_ns_;  // by pixel
   std::deque<Check> checks_;

@@ -15,7 +15,7 @@ constexpr std::tuple kEdgeSlopeFields{
           "Half width of the neighbourhood of the plane fit."},
     Field{"largest_error_px", &EdgeSlopeOptions::largest_error_px, 0.6, within(0.05, 5.0), "px",
           "Largest deviation of a neighbour from the plane, as a distance that the edge travels."},
-    Field{"least_share", &EdgeSlopeOptions::least_share, 0.6, within(0.2, 1.0), "",
+    Field{"min_share", &EdgeSlopeOptions::min_share, 0.6, within(0.2, 1.0), "",
           "Smallest share of inliers in the neighbourhood."},
     Field{"longest_crossing_s", &EdgeSlopeOptions::longest_crossing_s, 0.12, within(1e-3, 1.0), "s",
           "Longest time of an edge in the neighbourhood; slower edges may have changed their speed."},
@@ -128,7 +128,7 @@ bool EdgeSlopeFinder::fitPlane(double largest_error_s, Plane& plane) const {
   }
   const int side = 2 * options_.radius_px + 1;
   plane.count = static_cast<int>(n);
-  if (n < options_.least_share * side * side) return false;
+  if (n < options_.min_share * side * side) return false;
   xx -= x * x / n;
   xy -= x * y / n;
   yy -= y * y / n;

@@ -20,7 +20,7 @@ namespace evical {
 struct EdgeSlopeOptions {
   int radius_px;
   double largest_error_px;
-  double least_share;
+  double min_share;
   double longest_crossing_s;
   double fastest_px_s;
 

@@ -48,7 +48,7 @@ CircleSums sumUp(const std::vector<CirclePoint>& points, const MovingCircle& cir
     if (std::abs(r) > gate_px || distance < 1e-6) continue;
     const double nx = dx / distance, ny = dy / distance;
     const double cosine = point.lead * (nx * circle.velocity_px_s.x() + ny * circle.velocity_px_s.y());
-    if (cosine < options.least_polarity_cosine * speed) continue;
+    if (cosine < options.min_polarity_cosine * speed) continue;
     const double w = cauchyWeight(r * r * inverse_scale2);
     sums.weight += w;
     sums.squares += w * r * r;
@@ -93,10 +93,10 @@ std::optional<MovingCircle> fitFrom(MovingCircle circle, const std::vector<Circl
   const double loosened = std::max(1.0, 0.06 * first_radius_px);
   circle.bursts = sums.bursts;
   circle.sectors = std::popcount(sums.sectors);
-  if (sums.weight <= 0.0 || circle.sectors < options.least_bins) return std::nullopt;
-  if (std::min(sums.leading, sums.trailing) < options.least_bursts_per_polarity) return std::nullopt;
+  if (sums.weight <= 0.0 || circle.sectors < options.min_bins) return std::nullopt;
+  if (std::min(sums.leading, sums.trailing) < options.min_bursts_per_polarity) return std::nullopt;
   circle.rms_px = std::sqrt(sums.squares / sums.weight) / loosened;
-  if (circle.rms_px > options.largest_rms_px) return std::nullopt;
+  if (circle.rms_px > options.max_rms_px) return std::nullopt;
   return circle;
 }
 
@@ -137,8 +137,8 @@ double typicalEdgeSpeed_px_s(const BurstWindow& window) {
       }
     }
   }
-  constexpr std::size_t kLeast = 30;
-  if (speeds.size() < kLeast) return 0.0;
+  constexpr std::size_t kMin = 30;
+  if (speeds.size() < kMin) return 0.0;
   return medianOf(std::move(speeds));
 }
 

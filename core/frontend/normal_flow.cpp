@@ -76,36 +76,36 @@ void visitNeighbours(const float* centre, int stride, int radius, Visit&& visit)
 }
 
 // False if too little of the neighbourhood is on a plane, or if the pixel itself is not.
-bool fitPlane(const float* centre, int stride, int least_inliers, const NormalFlowOptions& options,
+bool fitPlane(const float* centre, int stride, int min_inliers, const NormalFlowOptions& options,
               Plane& plane) {
   PlaneSums sums;
   const int radius = options.plane_radius_px;
   visitNeighbours(centre, stride, radius, [&](int dx, int dy, double t) { sums.add(dx, dy, t); });
-  if (sums.n < least_inliers || !sums.solve(plane)) return false;
+  if (sums.n < min_inliers || !sums.solve(plane)) return false;
   for (int refit = 0; refit < kPlaneRefits; ++refit) {
-    const double largest_error_s = options.largest_plane_error_px * plane.slope_s_px();
+    const double largest_error_s = options.max_plane_error_px * plane.slope_s_px();
     const int before = sums.n;
     sums = PlaneSums{};
     visitNeighbours(centre, stride, radius, [&](int dx, int dy, double t) {
       if (plane.error_s(dx, dy, t) <= largest_error_s) sums.add(dx, dy, t);
     });
-    if (sums.n < least_inliers) return false;
+    if (sums.n < min_inliers) return false;
     if (sums.n == before && refit > 0) break;
     if (!sums.solve(plane)) return false;
   }
-  return plane.error_s(0, 0, 0.0) <= options.largest_plane_error_px * plane.slope_s_px();
+  return plane.error_s(0, 0, 0.0) <= options.max_plane_error_px * plane.slope_s_px();
 }
 
 }  // namespace
 
 NormalFlowField estimateNormalFlow(const ActiveEventSurface& surface, const NormalFlowOptions& options) {
   const int side = 2 * options.plane_radius_px + 1;
-  const int least_inliers = static_cast<int>(std::ceil(options.least_plane_inliers * side * side - 1e-9));
+  const int min_inliers = static_cast<int>(std::ceil(options.min_plane_inliers * side * side - 1e-9));
   NormalFlowField field;
   for (const ActivePixel& pixel : surface.pixels()) {
     const float* const centre = surface.at(pixel.leading, pixel.x_px, pixel.y_px);
     Plane plane;
-    if (!fitPlane(centre, surface.stride(), least_inliers, options, plane)) continue;
+    if (!fitPlane(centre, surface.stride(), min_inliers, options, plane)) continue;
     const double slope2 = plane.a * plane.a + plane.b * plane.b;
     if (slope2 * options.fastest_px_s * options.fastest_px_s < 1.0) continue;
     field.push_back({pixel.x_px, pixel.y_px, pixel.leading, *centre,
@@ -196,7 +196,7 @@ std::vector<EventCluster> clusterFlow(const NormalFlowField& field, Resolution r
     EventCluster cluster;
     cluster.leading = field[first].leading;
     cluster.flows = image.takeConnected(field, first);
-    if (cluster.flows.size() < static_cast<std::size_t>(options.least_cluster_px)) continue;
+    if (cluster.flows.size() < static_cast<std::size_t>(options.min_cluster_px)) continue;
     Eigen::Vector2d direction = Eigen::Vector2d::Zero();
     for (const std::uint32_t i : cluster.flows) {
       cluster.centroid_px += place(field[i]);

@@ -94,10 +94,10 @@ void voteRadius(const PyramidLevel& level, double radius, double half_width, int
   }
 }
 
-void collectPeaks(const PyramidLevel& level, const BestVotes& best, double least_score,
+void collectPeaks(const PyramidLevel& level, const BestVotes& best, double min_score,
                   std::vector<CircleCandidate>& candidates) {
   constexpr int kNeighbourhood = 2;
-  const auto least = static_cast<float>(least_score * least_score);
+  const auto least = static_cast<float>(min_score * min_score);
   const double size = 1 << level.shift;
   for (int y = 0; y < level.height; ++y) {
     for (int x = 0; x < level.width; ++x) {
@@ -135,8 +135,8 @@ std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const Fro
   std::vector<CircleCandidate> candidates;
   const Resolution resolution = window.resolution_px();
   const double largest_px =
-      std::min(all.detection.largest_radius_px, 0.25 * std::min(resolution.width_px, resolution.height_px));
-  double radius_px = all.detection.smallest_radius_px;
+      std::min(all.detection.max_radius_px, 0.25 * std::min(resolution.width_px, resolution.height_px));
+  double radius_px = all.detection.min_radius_px;
   for (int shift = 0; radius_px <= largest_px; ++shift) {
     const double size = 1 << shift;
     const double level_end_px = std::min(kLevelRadius_px * size, largest_px);
@@ -150,12 +150,12 @@ std::vector<CircleCandidate> voteForCircles(const BurstWindow& window, const Fro
     for (; radius_px <= level_end_px; radius_px *= options.radius_step) {
       voteRadius(level, radius_px / size, half_width, pad, votes, best);
     }
-    collectPeaks(level, best, options.least_score, candidates);
+    collectPeaks(level, best, options.min_score, candidates);
   }
   std::sort(candidates.begin(), candidates.end(),
             [](const CircleCandidate& a, const CircleCandidate& b) { return a.score > b.score; });
-  if (candidates.size() > static_cast<std::size_t>(options.most_candidates)) {
-    candidates.resize(static_cast<std::size_t>(options.most_candidates));
+  if (candidates.size() > static_cast<std::size_t>(options.max_candidates)) {
+    candidates.resize(static_cast<std::size_t>(options.max_candidates));
   }
   return candidates;
 }

@@ -122,7 +122,7 @@ std::vector<int> renumbering(const Board& board, const Eigen::Matrix3d& shift) {
 }
 
 PlacementWatch::PlacementWatch(const Board& board, const GridOptions& options)
-    : options_(options), shifts_(latticeShifts(board, options.least_rival_overlap)) {}
+    : options_(options), shifts_(latticeShifts(board, options.min_rival_overlap)) {}
 
 void PlacementWatch::begin() {
   contradicting_ = agreeing_ = wait_ = 0;

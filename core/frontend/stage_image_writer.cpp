@@ -45,7 +45,7 @@ void StageImageWriter::windowSearched(const BoardSearch& search, std::int64_t mi
   if (number % every_nth_ != 0) return;
   BurstWindow window(*scene_);
   if (history_)
-    window.fillSupported(*history_, middle_ns, search.half_window_s, options_.ring_vote.least_support);
+    window.fillSupported(*history_, middle_ns, search.half_window_s, options_.ring_vote.min_support);
   else
     window.assign({}, middle_ns);
   const std::filesystem::path path = numbered(directory_, "search", number);

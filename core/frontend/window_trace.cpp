@@ -19,17 +19,17 @@ constexpr double kFitReach = 1.5;
 
 double fitReach_s(const BoardMotion& prediction, const BoardScene& scene, const TrackingOptions& options) {
   return std::min(kFitReach * fitHalfWindow_s(boardSpeed_px_s(prediction, scene), options),
-                  options.longest_fit_half_window_s);
+                  options.max_fit_half_window_s);
 }
 
 double firstGate_px(const BoardMotion& last, const WindowSlot& slot, const FrontEndOptions& options) {
-  const bool lost = last.time_ns < slot.begin_ns - nanosecondsFrom(2.0 * options.detection.longest_window_s);
+  const bool lost = last.time_ns < slot.begin_ns - nanosecondsFrom(2.0 * options.detection.max_window_s);
   return options.tracking.first_gate_px * (lost ? kLostGateFactor : 1.0);
 }
 
 TrackingEnd endOf(int found, int expected, const FrontEndOptions& options) {
-  if (found < options.grid.least_circles) return TrackingEnd::TooFewCircles;
-  if (found < kLeastExpected * expected) return TrackingEnd::TooFewOfExpected;
+  if (found < options.grid.min_circles) return TrackingEnd::TooFewCircles;
+  if (found < kMinExpected * expected) return TrackingEnd::TooFewOfExpected;
   return TrackingEnd::Held;
 }
 
@@ -37,7 +37,7 @@ TrackingEnd endOf(int found, int expected, const FrontEndOptions& options) {
 
 WindowOutcome outcomeOf(int found, const BoardScene& scene, const GridOptions& options) {
   const int count = scene.board.pointCount();
-  const double least = std::max<double>(kLeastForHomography, options.least_partial * count);
+  const double least = std::max<double>(kMinForHomography, options.min_partial * count);
   if (found < least) return WindowOutcome::TooFewInGrid;
   return found == count ? WindowOutcome::Complete : WindowOutcome::Partial;
 }
@@ -83,7 +83,7 @@ const BoardView* viewToTrackFrom(const BoardObservations& observations, double t
       std::lower_bound(observations.views.begin(), observations.views.end(), time_s - kSame_s, before);
   if (next == observations.views.begin()) return nullptr;
   const BoardView& view = *std::prev(next);
-  return time_s - view.time_s > options.longest_gap_s ? nullptr : &view;
+  return time_s - view.time_s > options.max_gap_s ? nullptr : &view;
 }
 
 std::optional<BoardMotion> motionAtView(const TrackingInput& input, const BoardView& view) {

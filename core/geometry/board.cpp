@@ -44,10 +44,10 @@ void validateTags(const Board& board) {
 
 // Distance to the nearest other point.
 double gap_m(const std::vector<Eigen::Vector2d>& points_m, std::size_t of) {
-  double least_m2 = std::numeric_limits<double>::infinity();
+  double min_m2 = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < points_m.size(); ++i)
-    if (i != of) least_m2 = std::min(least_m2, (points_m[i] - points_m[of]).squaredNorm());
-  return std::sqrt(least_m2);
+    if (i != of) min_m2 = std::min(min_m2, (points_m[i] - points_m[of]).squaredNorm());
+  return std::sqrt(min_m2);
 }
 
 // Ratio of the extents (one sigma) across and along the longest direction.
@@ -61,10 +61,10 @@ double roundness(const std::vector<Eigen::Vector2d>& points_m) {
 }
 
 void validatePoints(const Board& board) {
-  constexpr std::size_t kLeast = 4;
+  constexpr std::size_t kMin = 4;
   constexpr double kNarrowest = 0.01;  // a line does not determine a pose
   const std::vector<Eigen::Vector2d>& points_m = board.given_m;
-  if (points_m.size() < kLeast)
+  if (points_m.size() < kMin)
     throw badInput("board.points_m", std::to_string(points_m.size()) + " points are too few for a pose",
                    "Give at least 4 points, preferably dozens");
   std::set<std::pair<double, double>> taken;
@@ -175,12 +175,12 @@ std::vector<Eigen::Vector2d> boardPoints_m(const Board& board) {
 
 void validate(const Board& board) {
   if (!board.hasPattern()) return validatePoints(board);
-  constexpr int kMostRows = 100;
+  constexpr int kMaxRows = 100;
   const bool tags = board.type == BoardType::AprilGrid;
   const int least = tags ? 1 : board.type == BoardType::Charuco ? 3 : 2;
-  if (board.rows < least || board.cols < least || board.rows > kMostRows || board.cols > kMostRows) {
+  if (board.rows < least || board.cols < least || board.rows > kMaxRows || board.cols > kMaxRows) {
     throw badInput(
-        "board", "rows and cols must each be in " + std::to_string(least) + ".." + std::to_string(kMostRows),
+        "board", "rows and cols must each be in " + std::to_string(least) + ".." + std::to_string(kMaxRows),
         board.hasCircles() ? "Count the circles: an asymmetric board's rows are the staggered lines"
                            : (tags ? "Count the tags"
                                    : "Count a checkerboard's inner corners, a ChArUco board's "

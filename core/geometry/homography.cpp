@@ -20,7 +20,7 @@ std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>&
     const double s = std::sqrt(2.0 * static_cast<double>(points.size()) / std::max(spread, 1e-30));
     return (Eigen::Matrix3d() << s, 0, -s * mean.x(), 0, s, -s * mean.y(), 0, 0, 1).finished();
   };
-  if (from.size() < kLeastForHomography) return std::nullopt;
+  if (from.size() < kMinForHomography) return std::nullopt;
   const Eigen::Matrix3d nf = normaliser(from), nt = normaliser(to);
   Eigen::Matrix<double, 9, 9> sums = Eigen::Matrix<double, 9, 9>::Zero();
   for (std::size_t k = 0; k < from.size(); ++k) {

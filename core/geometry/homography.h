@@ -10,7 +10,7 @@
 namespace evical {
 
 // Smallest number of points for a homography.
-inline constexpr std::size_t kLeastForHomography = 4;
+inline constexpr std::size_t kMinForHomography = 4;
 
 // Homography from points to points (normalised direct linear transform); empty if degenerate.
 std::optional<Eigen::Matrix3d> fitHomography(const std::vector<Eigen::Vector2d>& from,

@@ -29,7 +29,7 @@ struct Sights {
 
 // Rays of pixels over the whole image including its edges, as far as `model` can project them.
 Sights sightsOf(const CameraIntrinsics& camera, CameraModel model, int columns, int rows) {
-  const double least_z = isSphereModel(model) ? -1.0 : std::cos(85.0 * kRadPerDeg);
+  const double min_z = isSphereModel(model) ? -1.0 : std::cos(85.0 * kRadPerDeg);
   Sights sights;
   for (int row = 0; row < rows; ++row)
     for (int col = 0; col < columns; ++col) {
@@ -37,7 +37,7 @@ Sights sightsOf(const CameraIntrinsics& camera, CameraModel model, int columns, 
                                   (camera.resolution_px.height_px - 1.0) * row / (rows - 1));
       const auto ray = unprojectRay(camera, pixel);
       if (!ray) continue;  // no ray in the camera's own model either
-      if (ray->z() >= least_z)
+      if (ray->z() >= min_z)
         sights.seen.push_back({pixel, *ray});
       else
         sights.whole_image = false;

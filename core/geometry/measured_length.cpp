@@ -9,12 +9,12 @@
 
 namespace evical {
 
-int mostSpacings(const Board& board) {
+int maxSpacings(const Board& board) {
   return static_cast<int>(std::lround(board.extent_m().maxCoeff() / board.spacing_m));
 }
 
 void validate(const MeasuredLength& measured, const Board& board) {
-  const int most = mostSpacings(board);
+  const int most = maxSpacings(board);
   if (measured.spacings < 1 || measured.spacings > most)
     throw badInput(
         "board.measured.spacings",

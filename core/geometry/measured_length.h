@@ -17,7 +17,7 @@ struct MeasuredLength {
 };
 
 // Number of spacings in the board's longest line.
-int mostSpacings(const Board& board);
+int maxSpacings(const Board& board);
 
 // Throws CalibrationError (BadInput, place "board.measured...") if the board has no such line, or a value is
 // implausible.

@@ -26,7 +26,7 @@ double cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
 
 bool alike(const LatticeCircle& a, const LatticeCircle& b, const LatticeOptions& options) {
   const double ratio = a.radius_px / b.radius_px;
-  return ratio < options.largest_radius_ratio && ratio > 1.0 / options.largest_radius_ratio;
+  return ratio < options.max_radius_ratio && ratio > 1.0 / options.max_radius_ratio;
 }
 
 std::vector<std::size_t> neighboursOf(std::size_t seed, const std::vector<LatticeCircle>& circles,
@@ -36,14 +36,14 @@ std::vector<std::size_t> neighboursOf(std::size_t seed, const std::vector<Lattic
   for (std::size_t k = 0; k < circles.size(); ++k) {
     if (k == seed || !alike(centre, circles[k], options)) continue;
     const double distance = (circles[k].centre_px - centre.centre_px).norm();
-    if (distance < options.shortest_step_radii * centre.radius_px) continue;
-    if (distance > options.longest_step_radii * centre.radius_px) continue;
+    if (distance < options.min_step_radii * centre.radius_px) continue;
+    if (distance > options.max_step_radii * centre.radius_px) continue;
     near.emplace_back(distance, k);
   }
   std::sort(near.begin(), near.end());
-  constexpr std::size_t kMost = 8;
+  constexpr std::size_t kMax = 8;
   std::vector<std::size_t> indices;
-  for (std::size_t n = 0; n < std::min(near.size(), kMost); ++n) indices.push_back(near[n].second);
+  for (std::size_t n = 0; n < std::min(near.size(), kMax); ++n) indices.push_back(near[n].second);
   return indices;
 }
 
@@ -110,12 +110,12 @@ CircleLattice findCircleLattice(const std::vector<LatticeCircle>& circles, const
       for (const std::size_t q : near) {
         const Eigen::Vector2d a = circles[p].centre_px - circles[seed].centre_px;
         const Eigen::Vector2d b = circles[q].centre_px - circles[seed].centre_px;
-        if (cross(a, b) < options.least_sine * a.norm() * b.norm()) continue;
+        if (cross(a, b) < options.min_sine * a.norm() * b.norm()) continue;
         CircleLattice lattice = grow(seed, {a, b}, circles, options);
         if (lattice.size() > best_here.size()) best_here = std::move(lattice);
       }
     }
-    if (best_here.size() >= static_cast<std::size_t>(options.least_circles)) {
+    if (best_here.size() >= static_cast<std::size_t>(options.min_circles)) {
       for (const LatticeNode& node : best_here) settled[node.circle] = true;
     }
     if (best_here.size() > best.size()) best = std::move(best_here);

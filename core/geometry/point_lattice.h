@@ -20,12 +20,12 @@ struct LatticeCircle {
 };
 
 struct LatticeOptions {
-  double shortest_step_radii = 0.0;  // between neighbours, in their radii
-  double longest_step_radii = 0.0;
-  double largest_radius_ratio = 0.0;  // between neighbours
-  double step_tolerance = 0.0;        // distance from the predicted place, relative to a step
-  double least_sine = 0.0;            // between the lattice's two directions
-  int least_circles = 0;              // of a lattice
+  double min_step_radii = 0.0;  // between neighbours, in their radii
+  double max_step_radii = 0.0;
+  double max_radius_ratio = 0.0;  // between neighbours
+  double step_tolerance = 0.0;    // distance from the predicted place, relative to a step
+  double min_sine = 0.0;          // between the lattice's two directions
+  int min_circles = 0;            // of a lattice
 };
 
 struct LatticeNode {

@@ -13,11 +13,11 @@ namespace evical {
 // derivatives up to 2 and third ones up to 3, in knots. With a half the length, 2/3 a, 2 a^2 / 4 and 3 a^3 / 24 remain after one,
 // two and three times. The limits leave less than 1e-3, also where the errors of several control points add up.
 struct PoseTimes {
-  static constexpr std::size_t kMost = 3;
+  static constexpr std::size_t kMax = 3;
   // Longest views with one, two and three times.
-  static constexpr std::array<double, kMost> kLongest_knots = {6e-4, 0.045, 0.24};
+  static constexpr std::array<double, kMax> kLongest_knots = {6e-4, 0.045, 0.24};
   std::size_t count = 0;
-  std::array<double, kMost> times_s{};
+  std::array<double, kMax> times_s{};
 
   PoseTimes() = default;
   PoseTimes(double first_s, double last_s, double knot_spacing_s) {
@@ -33,8 +33,8 @@ struct PoseTimes {
   static double longest_s(double knot_spacing_s) { return kLongest_knots.back() * knot_spacing_s; }
 
   // Lagrange's polynomials.
-  std::array<double, kMost> weightsAt(double time_s) const {
-    std::array<double, kMost> weights{};
+  std::array<double, kMax> weightsAt(double time_s) const {
+    std::array<double, kMax> weights{};
     for (std::size_t i = 0; i < count; ++i) {
       weights[i] = 1.0;
       for (std::size_t k = 0; k < count; ++k)

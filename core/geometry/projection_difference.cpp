@@ -63,7 +63,7 @@ namespace {
 // Errors of `other` along the rays, after the rotation that fits them best.
 std::vector<std::optional<Eigen::Vector2d>> turnedErrors(const std::vector<std::optional<RayPixel>>& rays,
                                                          const CameraIntrinsics& other) {
-  constexpr int kIterations = 5, kLeastRays = 3;
+  constexpr int kIterations = 5, kMinRays = 3;
   std::vector<std::optional<Eigen::Vector2d>> errors;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
@@ -79,7 +79,7 @@ std::vector<std::optional<Eigen::Vector2d>> turnedErrors(const std::vector<std::
       vector -= rays[i]->by_turn.transpose() * *errors[i];
       ++seen;
     }
-    if (seen < kLeastRays) return errors;
+    if (seen < kMinRays) return errors;
     if (iteration < kIterations) turn = so3Exp(matrix.ldlt().solve(vector)) * turn;
   }
   return errors;

@@ -55,7 +55,7 @@ ImuRotation alignFurtherGyroscope(const ImuData& imu, std::int64_t start_ns, con
     throw calibrationFailed(
         imu.name,
         fmt::format("its samples overlap with the reference's for less than {:.1f} s at {}",
-                    options.least_overlap_s, offsets),
+                    options.min_overlap_s, offsets),
         "Check the clocks, or " + advice);
   }
   std::optional<ImuRotation> best;

@@ -49,12 +49,12 @@ void checkStampsApart(const std::string& imu, const std::vector<std::int64_t>& t
 }
 
 // Words for a gyroscope that is at its limit for a large part of the samples; empty if none is.
-std::string rateLimitOf(const ImuData& imu, double least_share) {
+std::string rateLimitOf(const ImuData& imu, double min_share) {
   const std::array<double, kImuAxes.size()> shares = saturatedShares(imu.samples);
   std::size_t worst = 0;
   for (std::size_t axis = 0; axis < kImuAxes.size(); ++axis)
     if (kImuAxes[axis].rate && shares[axis] > shares[worst]) worst = axis;
-  if (shares[worst] < least_share) return {};
+  if (shares[worst] < min_share) return {};
   return fmt::format("{} is at its limit in {:.0f} % of the samples", kImuAxes[worst].name,
                      100.0 * shares[worst]);
 }
@@ -102,10 +102,10 @@ void checkRotationsAgree(const CalibrationInput& input, const CameraAgreement& a
   // If motion about one axis dominates, wrong handedness leaves a small residual, but a reflection a smaller
   // one. A mirrored gyroscope left 33 % of such a motion, of 40 % that are allowed, and its reflection less
   // than a fifth of that (much_better). far_better and suspicious_motion are chosen, not measured.
-  const bool unexplained = rotation.rotated >= options.largest_unexplained_motion;
+  const bool unexplained = rotation.rotated >= options.max_unexplained_motion;
   const bool left_handed =
       unexplained ? rotation.reflected < options.far_better * rotation.rotated
-                  : rotation.rotated >= options.suspicious_motion * options.largest_unexplained_motion &&
+                  : rotation.rotated >= options.suspicious_motion * options.max_unexplained_motion &&
                         rotation.reflected < options.much_better * rotation.rotated;
   if (!unexplained && !left_handed) return;
   if (left_handed) {
@@ -144,7 +144,7 @@ void checkAccelerationsAgree(const CalibrationInput& input, const StatedSigns& s
   // (chosen, not measured).
   const bool negative = signOfScale(gravity, options) < 0;
   if (!negative && gravity.acceleration_misfit_m_s2 <
-                       options.suspicious_motion * options.largest_unexplained_motion * forceSpread_m_s2(imu))
+                       options.suspicious_motion * options.max_unexplained_motion * forceSpread_m_s2(imu))
     return;
   const auto cause = findWrongAxes(input, false, options, context);
   if (cause && !cause->negated)
@@ -278,19 +278,19 @@ std::optional<AxesCause> findWrongAxes(const CalibrationInput& input, bool left_
     const AxesTrial trial(std::move(tried), options, context);
     const std::vector<Eigen::Matrix3d> all = readings();
     const double as_is_m_s2 = trial.misfit_m_s2(all.front());
-    double least_m_s2 = as_is_m_s2;
+    double min_m_s2 = as_is_m_s2;
     Eigen::Matrix3d best = all.front();
     for (const Eigen::Matrix3d& reading : all) {
       const double misfit_m_s2 = trial.misfit_m_s2(reading);
-      if (misfit_m_s2 >= least_m_s2 * (best.isIdentity() ? options.far_better : 1.0)) continue;
-      least_m_s2 = misfit_m_s2;
+      if (misfit_m_s2 >= min_m_s2 * (best.isIdentity() ? options.far_better : 1.0)) continue;
+      min_m_s2 = misfit_m_s2;
       best = reading;
     }
     if (best.isIdentity() && !left_handed_gyroscope) return std::nullopt;
     const std::string proof =
         best.isIdentity()
-            ? fmt::format("after this change, accelerations agree to {:.2g} m/s^2", least_m_s2)
-            : fmt::format("accelerations agree to {:.2g} m/s^2 instead of {:.2g}", least_m_s2, as_is_m_s2);
+            ? fmt::format("after this change, accelerations agree to {:.2g} m/s^2", min_m_s2)
+            : fmt::format("accelerations agree to {:.2g} m/s^2 instead of {:.2g}", min_m_s2, as_is_m_s2);
     return causeOf(best, left_handed_gyroscope, input.imus[input.reference_imu].name, proof);
   } catch (const CalibrationError&) {
     return std::nullopt;  // fails for another reason, independent of the axes

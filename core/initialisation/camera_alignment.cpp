@@ -34,7 +34,7 @@ std::vector<CameraPose> cameraPoses(const CameraData& camera, const Board& board
     result.warnings.push_back(fmt::format(
         "{}: the points of most views ({} of {}) fit the board with errors above {:.2f} px; check the "
         "intrinsics and the board",
-        camera.name, found.rejected, camera.observations.views.size(), options.largest_reprojection_px));
+        camera.name, found.rejected, camera.observations.views.size(), options.max_reprojection_px));
   }
   return std::move(found.poses);
 }
@@ -43,7 +43,7 @@ std::vector<CameraPose> cameraPoses(const CameraData& camera, const Board& board
 std::optional<AlignedCamera> align(std::vector<CameraPose> poses, const GyroRotation& gyro,
                                    double time_offset_s, const InitialisationOptions& options,
                                    const SensorPrior& prior) {
-  resolveAmbiguousPoses(poses, gyro, time_offset_s, options.longest_pair_s);
+  resolveAmbiguousPoses(poses, gyro, time_offset_s, options.max_pair_s);
   const std::optional<RelativeRotation> found =
       estimateCameraImuRotation(poses, gyro, time_offset_s, options, prior);
   if (!found) return std::nullopt;
@@ -105,7 +105,7 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
     const PoseConsistency consistency = keepConsistentPoses(next.poses, unbiased, next.hand_eye, options);
     const auto again =
         estimateCameraImuRotation(next.poses, gyro, next.hand_eye.time_offset_s, options, camera.prior);
-    if (!again || static_cast<int>(next.poses.size()) < options.least_views) {
+    if (!again || static_cast<int>(next.poses.size()) < options.min_views) {
       result.warnings.push_back(camera.name +
                                 ": rotations of camera and gyroscope contradict each other in most views");
       return;
@@ -130,12 +130,12 @@ bool isClear(const std::vector<TimeOffsetPeak>& peaks, const InitialisationOptio
 
 InitialisationOptions widest(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
                              const InitialisationOptions& options) {
-  constexpr double kLeastShare = 0.5;  // chosen: short overlaps can agree by chance
+  constexpr double kMinShare = 0.5;  // chosen: short overlaps can agree by chance
   InitialisationOptions wide = options;
   wide.time_offset_search_s = options.widest_time_offset_search_s;
-  wide.least_overlap_s = std::max(
-      options.least_overlap_s,
-      kLeastShare * std::min(poses.back().time_s - poses.front().time_s, gyro.end_s() - gyro.begin_s()));
+  wide.min_overlap_s = std::max(
+      options.min_overlap_s,
+      kMinShare * std::min(poses.back().time_s - poses.front().time_s, gyro.end_s() - gyro.begin_s()));
   return wide;
 }
 
@@ -161,13 +161,12 @@ void checkClocks(const CameraData& camera, const std::string& imu, const std::ve
   const double first_s = poses.front().time_s, last_s = poses.back().time_s;
   const double overlap_s =
       std::min(last_s, gyro.end_s() - offset_s) - std::max(first_s, gyro.begin_s() - offset_s);
-  if (overlap_s >= options.least_overlap_s) return;
+  if (overlap_s >= options.min_overlap_s) return;
   const bool apart = overlap_s <= 0.0;
   std::string problem = fmt::format(
       "camera and IMU {}: the board is seen from {:.3f} s to {:.3f} s, the IMU has samples from {:.3f} s to "
       "{:.3f} s",
-      apart ? "do not overlap in time"
-            : fmt::format("overlap for less than {:.1f} s", options.least_overlap_s),
+      apart ? "do not overlap in time" : fmt::format("overlap for less than {:.1f} s", options.min_overlap_s),
       first_s, last_s, gyro.begin_s(), gyro.end_s());
   std::string advice = apart ? "Check the clocks" : "Record for 30 s";
   if (isGiven(known)) {
@@ -252,7 +251,7 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
 
 namespace {
 
-constexpr double kMostNeighbours = 120.0;  // enough for a vote
+constexpr double kMaxNeighbours = 120.0;  // enough for a vote
 // Mirrored poses agree with each other for a while, as long as the viewing direction is constant; since their
 // circles fit worse, they have a lower weight.
 constexpr double kSecondChoice = 0.5;
@@ -273,17 +272,17 @@ struct Vote {
 };
 
 Vote voteOn(const std::vector<Carried>& carried, const std::vector<CameraPose>& poses, std::size_t k,
-            double least_cosine, double window_s) {
+            double min_cosine, double window_s) {
   const auto agreement = [&](const Eigen::Quaterniond& a, const Carried& other) {
-    if (std::abs(a.dot(other.first)) > least_cosine) return 1.0;
-    return other.has_second && std::abs(a.dot(other.second)) > least_cosine ? kSecondChoice : 0.0;
+    if (std::abs(a.dot(other.first)) > min_cosine) return 1.0;
+    return other.has_second && std::abs(a.dot(other.second)) > min_cosine ? kSecondChoice : 0.0;
   };
   const auto earlier = [](const CameraPose& pose, double time_s) { return pose.time_s < time_s; };
   const auto begin =
       std::lower_bound(poses.begin(), poses.end(), poses[k].time_s - window_s, earlier) - poses.begin();
   const auto end =
       std::lower_bound(poses.begin(), poses.end(), poses[k].time_s + window_s, earlier) - poses.begin();
-  const double stride = std::max(1.0, static_cast<double>(end - begin) / kMostNeighbours);
+  const double stride = std::max(1.0, static_cast<double>(end - begin) / kMaxNeighbours);
   Vote vote;
   for (auto position = static_cast<double>(begin); position < static_cast<double>(end); position += stride) {
     const auto n = static_cast<std::size_t>(position);
@@ -313,7 +312,7 @@ double medianStep(const std::vector<CameraPose>& poses, const GyroRotation& gyro
 
 PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                     const RelativeRotation& hand_eye, const InitialisationOptions& options) {
-  const double least_cosine = std::cos(0.5 * options.largest_rotation_disagreement_rad);
+  const double min_cosine = std::cos(0.5 * options.max_rotation_disagreement_rad);
   std::vector<Carried> carried;
   for (const CameraPose& pose : poses) {
     const Eigen::Quaterniond back = hand_eye.reference_from_sensor.conjugate() *
@@ -327,10 +326,10 @@ PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRo
   std::vector<CameraPose> kept;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const double time_s = poses[k].time_s + hand_eye.time_offset_s;
-    const Vote vote = voteOn(carried, poses, k, least_cosine, options.agreement_window_s);
+    const Vote vote = voteOn(carried, poses, k, min_cosine, options.agreement_window_s);
     // Outside the gyroscope's samples, or without neighbours, no decision is possible.
     const bool judged = gyro.covers(time_s, time_s) && vote.neighbours > 0;
-    if (judged && std::max(vote.for_first, vote.for_second) < options.least_agreement * vote.neighbours) {
+    if (judged && std::max(vote.for_first, vote.for_second) < options.min_agreement * vote.neighbours) {
       ++result.dropped;
       continue;
     }

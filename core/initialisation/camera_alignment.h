@@ -29,7 +29,7 @@ struct PoseConsistency {
 };
 
 // `gyro` without its bias. Keeps poses that agree with enough of their neighbours within
-// `largest_rotation_disagreement_rad`.
+// `max_rotation_disagreement_rad`.
 PoseConsistency keepConsistentPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                     const RelativeRotation& hand_eye, const InitialisationOptions& options);
 

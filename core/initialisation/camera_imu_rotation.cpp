@@ -97,12 +97,12 @@ double step(const std::vector<RotationPair>& pairs, const GyroRotation& gyro, do
 }  // namespace
 
 std::vector<RotationPair> rotationPairs(const std::vector<CameraPose>& poses, double pair_gap_s,
-                                        double longest_pair_s) {
+                                        double max_pair_s) {
   std::vector<RotationPair> pairs;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     std::size_t l = k + 1;
     while (l < poses.size() && poses[l].time_s - poses[k].time_s < pair_gap_s) ++l;
-    if (l >= poses.size() || poses[l].time_s - poses[k].time_s > longest_pair_s) continue;
+    if (l >= poses.size() || poses[l].time_s - poses[k].time_s > max_pair_s) continue;
     pairs.push_back({poses[k].time_s, poses[l].time_s,
                      quaternionLog(poses[k].world_from_camera.rotation.conjugate() *
                                    poses[l].world_from_camera.rotation)});
@@ -116,7 +116,7 @@ std::optional<RelativeRotation> estimateCameraImuRotation(const std::vector<Came
                                                           const SensorPrior& prior) {
   constexpr double kFirstScale_rad = 0.05, kLastScale_rad = 0.005;
   constexpr int kSteps = 15;
-  std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
+  std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.max_pair_s);
   const bool offset_given = isGiven(prior.time_offset), rotation_given = isGiven(prior.rotation);
   const double reach_s = offset_given ? 0.0 : options.time_offset_reach_s;
   const double lowest_s = time_offset_s - reach_s, highest_s = time_offset_s + reach_s;

@@ -30,9 +30,9 @@ struct RotationPair {
   double from_s, to_s;       // camera clock
   Eigen::Vector3d seen_rad;  // camera(from)_from_camera(to), rotation vector
 };
-// Pairs each view with the next one that is at least `pair_gap_s` later, but at most `longest_pair_s`.
+// Pairs each view with the next one that is at least `pair_gap_s` later, but at most `max_pair_s`.
 std::vector<RotationPair> rotationPairs(const std::vector<CameraPose>& poses, double pair_gap_s,
-                                        double longest_pair_s);
+                                        double max_pair_s);
 
 // Needs a start offset with an error below `time_offset_reach_s`; a given offset or rotation of the prior is
 // fixed. Empty if fewer than five pairs are covered.

@@ -44,8 +44,7 @@ class CamerasAlone {
       if (k != input_.reference_camera) findOnReference(k, felt, gyro);
     }
     followAllInTurns();
-    alignFurtherBoards(input_, before_further_, trajectory_, options_.longest_shared_gap_s, options_,
-                       result_);
+    alignFurtherBoards(input_, before_further_, trajectory_, options_.max_shared_gap_s, options_, result_);
     result_.state.world_from_imu_rotation = std::move(trajectory_.world_from_camera_rotation);
     result_.state.imu_in_world_m = std::move(trajectory_.camera_in_world_m);
   }
@@ -58,7 +57,7 @@ class CamerasAlone {
     CameraPoses found =
         estimateCameraPoses(reference(), input_.boardAt(reference().board), options_, context_);
     checkViews(reference(), found, options_);
-    const int swapped = resolveBySmoothness(found.poses, options_.longest_pair_s);
+    const int swapped = resolveBySmoothness(found.poses, options_.max_pair_s);
     poses_ = found.poses;
     trajectory_ = through(poses_);
     result_.steps.push_back(
@@ -86,7 +85,7 @@ class CamerasAlone {
       first.hand_eye.axis_ratio = 1.0;  // its rotation is the identity, not estimated
       if (input_.cameras[k].board > 0)
         before_further_.emplace(k, std::move(aligned));
-      else if (contradictsHandedness(first, aligned, gyro, options_.longest_shared_gap_s, options_))
+      else if (contradictsHandedness(first, aligned, gyro, options_.max_shared_gap_s, options_))
         mirrored = mirroredOfTwo(input_, stated_, first, aligned);
       else
         place(k, aligned);
@@ -102,7 +101,7 @@ class CamerasAlone {
     Stopwatch stopwatch;
     const CameraData& camera = input_.cameras[k];
     CameraPoses found = estimateCameraPoses(camera, input_.boardAt(camera.board), options_, context_);
-    resolveBySmoothness(found.poses, options_.longest_pair_s);
+    resolveBySmoothness(found.poses, options_.max_pair_s);
     const auto bridged = bridgeCameras(poses_, found.poses, camera.prior.time_offset, options_, context_);
     if (!bridged) return false;
     const MeanPose& pose = bridged->reference_from_camera;
@@ -143,18 +142,18 @@ class CamerasAlone {
   void place(std::size_t k, const AlignedCamera& aligned) {
     const std::string& name = input_.cameras[k].name;
     const double time_offset_s = aligned.hand_eye.time_offset_s;
-    const auto found = relativePose(trajectory_, aligned.poses, time_offset_s, options_.longest_shared_gap_s,
-                                    options_.least_views);
+    const auto found = relativePose(trajectory_, aligned.poses, time_offset_s, options_.max_shared_gap_s,
+                                    options_.min_views);
     if (!found) {
       throw calibrationFailed(
           name,
           fmt::format("it and {} have views within {:.2f} s of each other in fewer than {} cases",
-                      reference().name, options_.longest_shared_gap_s, options_.least_views),
+                      reference().name, options_.max_shared_gap_s, options_.min_views),
           "Show the board to both at the same time, move it often and quickly from one to the other, "
           "or record with an IMU");
     }
     const MeanPose& pose = found->reference_from_camera;
-    if (pose.agreeing < options_.least_agreement) {
+    if (pose.agreeing < options_.min_agreement) {
       throw calibrationFailed(
           name,
           fmt::format("only {:.0f} % of its views agree on its pose relative to {}", 100.0 * pose.agreeing,
@@ -241,11 +240,11 @@ std::ptrdiff_t viewsBetween(const std::vector<MovingPose>& poses, double begin_s
 // In order of time on the reference's clock, each change from the views of one camera to those of the other is a gap.
 Bridges bridges(const std::vector<MovingPose>& reference_views, const std::vector<MovingPose>& camera_views,
                 double time_offset_s, double longest_s) {
-  constexpr std::size_t kMost = 400;  // limit for cameras that overlap: the first are sufficient
+  constexpr std::size_t kMax = 400;  // limit for cameras that overlap: the first are sufficient
   Bridges found;
   const auto add = [&](const MovingPose& of_reference, const MovingPose& of_camera) {
     const double half_gap_s = 0.5 * (of_camera.time_s + time_offset_s - of_reference.time_s);
-    if (2.0 * std::abs(half_gap_s) > longest_s || found.reference_from_camera.size() >= kMost) return;
+    if (2.0 * std::abs(half_gap_s) > longest_s || found.reference_from_camera.size() >= kMax) return;
     found.reference_from_camera.push_back(inverse(of_reference.after(half_gap_s)) *
                                           of_camera.after(-half_gap_s));
     const double middle_s = of_reference.time_s + half_gap_s, camera_middle_s = middle_s - time_offset_s;
@@ -305,10 +304,10 @@ std::optional<BridgedCamera> bridgeCameras(const std::vector<CameraPose>& refere
   for (int step = -steps; step <= steps; ++step) {
     context.throwIfStopped();
     const double offset_s = centre_s + step * kStep_s;
-    const Bridges each = bridges(reference_views, camera_views, offset_s, options.longest_bridge_s);
-    if (!each.bothWays(options.least_bridges)) continue;
+    const Bridges each = bridges(reference_views, camera_views, offset_s, options.max_bridge_s);
+    if (!each.bothWays(options.min_bridges)) continue;
     const MeanPose found = agreement(each.reference_from_camera);
-    if (found.agreeing < options.least_bridge_agreement) continue;
+    if (found.agreeing < options.min_bridge_agreement) continue;
     if (!best || misfitOf(found) < misfitOf(best->reference_from_camera))
       best = {found, offset_s, static_cast<int>(each.reference_from_camera.size())};
   }

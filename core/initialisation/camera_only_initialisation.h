@@ -28,7 +28,7 @@ struct BridgedCamera {
 };
 
 // Result for the time offset within options.time_offset_search_s of the prior's at which the gaps agree best,
-// or for the given one. Empty if there are too few gaps of at most options.longest_bridge_s, or if they do
+// or for the given one. Empty if there are too few gaps of at most options.max_bridge_s, or if they do
 // not agree.
 std::optional<BridgedCamera> bridgeCameras(const std::vector<CameraPose>& reference,
                                            const std::vector<CameraPose>& camera,

@@ -15,7 +15,7 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kLeastCircles = 4;
+constexpr std::size_t kMinCircles = 4;
 constexpr double kNoFit_px = 1e9;
 
 using Points = std::vector<std::pair<int, Eigen::Vector2d>>;  // board circle, ideal pixel
@@ -108,10 +108,10 @@ CameraPoses estimateCameraPoses(const CameraData& camera, const Board& board,
   for (std::size_t v = 0; v < camera.observations.views.size(); ++v) {
     context.throwIfStopped();
     const BoardView& view = camera.observations.views[v];
-    if (view.circles.size() < kLeastCircles) continue;
+    if (view.circles.size() < kMinCircles) continue;
     const auto found = planarPoses(atOneTime(view), *camera.lens.detection_intrinsics, board);
     if (!found.empty()) errors_px.push_back(found.front().first);
-    if (found.empty() || !(found.front().first <= options.largest_reprojection_px)) {
+    if (found.empty() || !(found.front().first <= options.max_reprojection_px)) {
       ++result.rejected;
       continue;
     }
@@ -132,14 +132,14 @@ CameraPoses estimateCameraPoses(const CameraData& camera, const Board& board,
 }
 
 int resolveAmbiguousPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro, double time_offset_s,
-                          double longest_pair_s) {
+                          double max_pair_s) {
   int swapped = 0;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     CameraPose& pose = poses[k];
     if (!pose.other_world_from_camera) continue;
     double kept = 0.0, other = 0.0;
     for (const std::size_t n : {k - 1, k + 1}) {
-      if (n >= poses.size() || std::abs(poses[n].time_s - pose.time_s) > longest_pair_s) continue;
+      if (n >= poses.size() || std::abs(poses[n].time_s - pose.time_s) > max_pair_s) continue;
       if (poses[n].other_world_from_camera && n > k) continue;  // not yet resolved
       kept += disagreement(pose.world_from_camera, pose.time_s, poses[n], gyro, time_offset_s);
       other += disagreement(*pose.other_world_from_camera, pose.time_s, poses[n], gyro, time_offset_s);

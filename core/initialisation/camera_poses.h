@@ -36,7 +36,7 @@ CameraPoses estimateCameraPoses(const CameraData& camera, const Board& board,
 // For views with two possible poses, selects the one whose rotation relative to its neighbours has the
 // gyroscope's magnitude. Returns the number of swapped ones.
 int resolveAmbiguousPoses(std::vector<CameraPose>& poses, const GyroRotation& gyro, double time_offset_s,
-                          double longest_pair_s);
+                          double max_pair_s);
 
 // Mean of several estimates of one pose, with robust weights.
 

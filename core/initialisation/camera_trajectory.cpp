@@ -10,7 +10,7 @@
 
 namespace evical {
 
-int resolveBySmoothness(std::vector<CameraPose>& poses, double longest_pair_s) {
+int resolveBySmoothness(std::vector<CameraPose>& poses, double max_pair_s) {
   constexpr int kPasses = 3;
   int swapped = 0;
   for (int pass = 0; pass < kPasses; ++pass) {
@@ -19,7 +19,7 @@ int resolveBySmoothness(std::vector<CameraPose>& poses, double longest_pair_s) {
       const auto strain_rad = [&](const RigidTransform& candidate) {
         double sum = 0.0;
         for (const std::size_t i : {k - 1, k + 1}) {  // 0 - 1 is beyond the end, too
-          if (i >= poses.size() || std::abs(poses[i].time_s - poses[k].time_s) > longest_pair_s) continue;
+          if (i >= poses.size() || std::abs(poses[i].time_s - poses[k].time_s) > max_pair_s) continue;
           sum += rotationAngleBetween_rad(poses[i].world_from_camera.rotation, candidate.rotation);
         }
         return sum;
@@ -71,7 +71,7 @@ std::vector<ImuSample> angularRatesOf(const CameraTrajectory& trajectory, std::i
 
 std::optional<RelativePose> relativePose(const CameraTrajectory& reference,
                                          const std::vector<CameraPose>& poses, double time_offset_s,
-                                         double gap_s, int least_views) {
+                                         double gap_s, int min_views) {
   std::vector<RigidTransform> each;
   for (const CameraPose& pose : poses) {
     const double time_s = pose.time_s + time_offset_s;
@@ -80,7 +80,7 @@ std::optional<RelativePose> relativePose(const CameraTrajectory& reference,
         worldFromImu(reference.world_from_camera_rotation, reference.camera_in_world_m, time_s);
     each.push_back(inverse(world_from_reference) * pose.world_from_camera);
   }
-  if (static_cast<int>(each.size()) < std::max(1, least_views)) return std::nullopt;
+  if (static_cast<int>(each.size()) < std::max(1, min_views)) return std::nullopt;
   // Mirrored solutions of planar poses are outliers.
   constexpr int kRounds = 20;
   constexpr PoseSpread kSpread{0.02, 0.01};

@@ -15,7 +15,7 @@ namespace evical {
 
 // For views with two possible poses, selects the one closer to those of its neighbours in time. Returns the
 // number of swapped ones.
-int resolveBySmoothness(std::vector<CameraPose>& poses, double longest_pair_s);
+int resolveBySmoothness(std::vector<CameraPose>& poses, double max_pair_s);
 
 struct CameraTrajectory {
   So3Spline world_from_camera_rotation;
@@ -35,9 +35,9 @@ struct RelativePose {
   MeanPose reference_from_camera;
   int views = 0;  // number of views used
 };
-// From views at times when the reference's pose is known, too; empty if there are fewer than `least_views`.
+// From views at times when the reference's pose is known, too; empty if there are fewer than `min_views`.
 std::optional<RelativePose> relativePose(const CameraTrajectory& reference,
                                          const std::vector<CameraPose>& poses, double time_offset_s,
-                                         double gap_s, int least_views);
+                                         double gap_s, int min_views);
 
 }  // namespace evical

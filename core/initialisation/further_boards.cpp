@@ -19,7 +19,7 @@ namespace evical {
 namespace {
 
 bool agrees(const std::optional<BoardAlignment>& found, const InitialisationOptions& options) {
-  return found && found->agreeing >= options.least_board_agreement;
+  return found && found->agreeing >= options.min_board_agreement;
 }
 
 void checkAlignment(const std::string& board, const CalibrationInput& input,
@@ -31,7 +31,7 @@ void checkAlignment(const std::string& board, const CalibrationInput& input,
         fmt::format(
             "fewer than {} views of it are within {:.2g} s of views of '{}', so their relative pose is "
             "unknown",
-            options.least_views, gap_s, input.boardName(0)),
+            options.min_views, gap_s, input.boardName(0)),
         "Keep each board in its camera's view at the same time, for most of the recording");
   }
   if (agrees(found, options)) return;
@@ -59,8 +59,8 @@ void alignFurtherBoards(const CalibrationInput& input, const std::map<std::size_
       cameras.push_back(k);
     }
     const std::string& name = input.boardName(board);
-    const auto found = alignBoard(body, sights, gap_s, options.least_views);
-    const auto negated = alignBoard(body, sights, gap_s, options.least_views, -1.0);
+    const auto found = alignBoard(body, sights, gap_s, options.min_views);
+    const auto negated = alignBoard(body, sights, gap_s, options.min_views, -1.0);
     if (agrees(negated, options) &&
         (!agrees(found, options) || negated->position_rms_m < options.far_better * found->position_rms_m))
       throw calibrationFailed(
@@ -205,9 +205,9 @@ class Translations {
 }  // namespace
 
 std::optional<BoardAlignment> alignBoard(const CameraTrajectory& body, std::span<const BoardSight> sights,
-                                         double gap_s, int least_views, double scale) {
+                                         double gap_s, int min_views, double scale) {
   const std::vector<Moment> moments = momentsOf(body, sights, gap_s, scale);
-  if (moments.empty() || static_cast<int>(moments.size()) < least_views) return std::nullopt;
+  if (moments.empty() || static_cast<int>(moments.size()) < min_views) return std::nullopt;
   BoardAlignment result;
   result.views = static_cast<int>(moments.size());
   const MeanPose rotation = meanRotation(sights, moments);

@@ -45,9 +45,9 @@ struct BoardAlignment {
   double rotation_rms_rad = 0.0, position_rms_m = 0.0;  // robust
 };
 
-// From views within `gap_s` of known poses of the body; empty if there are fewer than `least_views`.
+// From views within `gap_s` of known poses of the body; empty if there are fewer than `min_views`.
 // `scale`: of the board; -1 if the images of its cameras or those of the body's are mirrored (8.13).
 std::optional<BoardAlignment> alignBoard(const CameraTrajectory& body, std::span<const BoardSight> sights,
-                                         double gap_s, int least_views, double scale = 1.0);
+                                         double gap_s, int min_views, double scale = 1.0);
 
 }  // namespace evical

@@ -341,9 +341,9 @@ void Alignment::reweigh(const Solution& solution) {
   }
   // The norm of three equal normal errors has its median at 1.54 sigma. To balance both kinds of rows, each
   // sigma is limited to between a fifth of its option and ten times that.
-  constexpr double kMedianNorm = 1.54, kLeast = 0.2, kMost = 10.0;
+  constexpr double kMedianNorm = 1.54, kMin = 0.2, kMax = 10.0;
   const auto within = [&](double sigma, double option) {
-    return std::clamp(sigma / kMedianNorm, kLeast * option, kMost * option);
+    return std::clamp(sigma / kMedianNorm, kMin * option, kMax * option);
   };
   const double acceleration_m_s2 = medianOf(std::move(accelerations));
   acceleration_misfit_m_s2_ = acceleration_m_s2 / kMedianNorm;

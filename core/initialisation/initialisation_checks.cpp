@@ -45,7 +45,7 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
   for (const ImuData& imu : input.imus) {
     const std::size_t usable =
         std::min(withoutRateSpikes(imu.samples).size(), withFitForces(imu.samples).size());
-    if (usable >= static_cast<std::size_t>(options.least_imu_samples)) continue;
+    if (usable >= static_cast<std::size_t>(options.min_imu_samples)) continue;
     throw calibrationFailed(imu.name, "has only " + counted(usable, "usable sample"),
                             "Check the IMU's stream, and record for 30 s");
   }
@@ -54,15 +54,15 @@ void checkInput(const CalibrationInput& input, const InitialisationOptions& opti
 void checkTurnsWithCamera(const CalibrationInput& input, const ImuData& imu, const GyroRotation& gyro,
                           const InitialisationOptions& options, const RunContext& context) {
   const double imu_rad_s = gyro.rateRms_rad_s();
-  if (imu_rad_s >= options.least_rotation_rate_rad_s) return;
+  if (imu_rad_s >= options.min_rotation_rate_rad_s) return;
   const CameraData& camera = input.cameras.front();
   const CameraPoses found = estimateCameraPoses(camera, input.boardAt(camera.board), options, context);
   std::vector<double> rates_rad_s;
-  for (const RatePair& pair : ratePairs(found.poses, options.pair_gap_s, options.longest_pair_s))
+  for (const RatePair& pair : ratePairs(found.poses, options.pair_gap_s, options.max_pair_s))
     rates_rad_s.push_back(pair.rate_rad_s);
-  if (static_cast<int>(found.poses.size()) < options.least_views || rates_rad_s.empty()) return;
+  if (static_cast<int>(found.poses.size()) < options.min_views || rates_rad_s.empty()) return;
   const double camera_rad_s = medianOf(std::move(rates_rad_s));
-  if (camera_rad_s < options.turning_camera_ratio * std::max(imu_rad_s, options.least_rotation_rate_rad_s))
+  if (camera_rad_s < options.turning_camera_ratio * std::max(imu_rad_s, options.min_rotation_rate_rad_s))
     return;
   throw calibrationFailed(
       imu.name,
@@ -75,14 +75,14 @@ void checkTurnsWithCamera(const CalibrationInput& input, const ImuData& imu, con
 void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const InitialisationOptions& options,
                     std::vector<std::string>& warnings) {
   const double rate_rad_s = gyro.rateRms_rad_s();
-  if (rate_rad_s < options.least_rotation_rate_rad_s) {
+  if (rate_rad_s < options.min_rotation_rate_rad_s) {
     throw calibrationFailed(
         imu.name, fmt::format("the rig hardly moves: the gyroscope's rate is {:.4f} rad/s RMS", rate_rad_s),
         "Rotate the rig about all three axes while the board is in view");
   }
   double gap_begin_s = 0.0;
   const double gap_s = gyro.longestGap_s(&gap_begin_s);
-  if (gap_s > options.longest_imu_gap_s) {
+  if (gap_s > options.max_imu_gap_s) {
     warnings.push_back(
         fmt::format("{}: no samples for {:.3f} s from {:.3f} s on; the motion there is extrapolated",
                     imu.name, gap_s, gap_begin_s));
@@ -91,21 +91,21 @@ void checkGyroscope(const ImuData& imu, const GyroRotation& gyro, const Initiali
 
 void checkViews(const CameraData& camera, const CameraPoses& found, const InitialisationOptions& options) {
   const std::size_t views = camera.observations.views.size();
-  if (static_cast<int>(views) < options.least_views) {
+  if (static_cast<int>(views) < options.min_views) {
     throw calibrationFailed(
         camera.name,
         fmt::format("the board was detected in {} of {} event windows or frames, but {} are needed", views,
-                    camera.observations.windows.size(), options.least_views),
+                    camera.observations.windows.size(), options.min_views),
         "Check the detections " + howTo(HowTo::LookAtDetections) +
             " and the board's rows and columns, and keep the board in view");
   }
-  if (static_cast<int>(found.poses.size()) < options.least_views) {
+  if (static_cast<int>(found.poses.size()) < options.min_views) {
     throw calibrationFailed(
         camera.name,
         fmt::format("the circles fit the board in {} of {} views, but {} are needed; the median error is "
                     "{:.2f} px (at most {:.2f} px is allowed)",
-                    found.poses.size(), views, options.least_views, found.median_reprojection_px,
-                    options.largest_reprojection_px),
+                    found.poses.size(), views, options.min_views, found.median_reprojection_px,
+                    options.max_reprojection_px),
         "Check the intrinsics, and the board's rows, columns, spacing and radius");
   }
 }
@@ -113,7 +113,7 @@ void checkViews(const CameraData& camera, const CameraPoses& found, const Initia
 void checkOverlap(const ImuData& imu, double views_begin_s, double views_end_s, double begin_s, double end_s,
                   const InitialisationOptions& options) {
   const double overlap_s = std::min(views_end_s, end_s) - std::max(views_begin_s, begin_s);
-  if (overlap_s >= options.least_overlap_s) return;
+  if (overlap_s >= options.min_overlap_s) return;
   throw calibrationFailed(
       imu.name,
       fmt::format(

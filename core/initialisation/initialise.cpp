@@ -55,13 +55,13 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
                    const GyroRotation& gyro, const RunContext& context, std::vector<AlignedCamera>& cameras,
                    Initialisation& result) {
   RelativeRotation& first = cameras.front().hand_eye;
-  if (first.axis_ratio >= options.least_axis_ratio) return;
+  if (first.axis_ratio >= options.min_axis_ratio) return;
   result.warnings.push_back(input.cameras.front().name +
                             ": the recording rotates about one axis only: rotate about two more");
   if (isGiven(input.cameras.front().prior.rotation)) return;
   // The angle does not need closely spaced knots.
-  constexpr double kLeastKnot_s = 0.05;
-  const double knot_s = std::max(options.knot_spacing_s, kLeastKnot_s);
+  constexpr double kMinKnot_s = 0.05;
+  const double knot_s = std::max(options.knot_spacing_s, kMinKnot_s);
   const So3Spline rotation = fitWorldRotation({cameras.data(), 1}, gyro, range.begin_s, range.end_s, knot_s);
   const double turn_rad = findTurnAboutAxis(first.main_axis_in_imu, tracksOf(input, cameras),
                                             withFitForces(referenceImu(input).samples), input.start_ns,
@@ -99,10 +99,10 @@ double commonKnotSpacing_s(const CalibrationInput& input, const InitialisationOp
 
 // A last segment with few measurements would not determine its outermost control points.
 double endOfWholeKnots_s(TimeRange range, double knot_s) {
-  constexpr double kLeastShare = 0.75;  // more than the batch requires, as delays and offsets move samples
+  constexpr double kMinShare = 0.75;  // more than the batch requires, as delays and offsets move samples
   const double knots = (range.end_s - range.begin_s) / knot_s;
   const double whole = std::floor(knots);
-  return whole < 1.0 || knots - whole >= kLeastShare ? range.end_s : range.begin_s + whole * knot_s;
+  return whole < 1.0 || knots - whole >= kMinShare ? range.end_s : range.begin_s + whole * knot_s;
 }
 
 void checkBoardScale(const GravityAlignment& gravity, const Board& board,
@@ -113,7 +113,7 @@ void checkBoardScale(const GravityAlignment& gravity, const Board& board,
        fmt::format("according to accelerations, the board is {:.3f} +- {:.3f} times as large as given",
                    gravity.board_scale, sigma),
        std::abs(excess), sigma});
-  if (std::abs(excess) < options.largest_scale_error || std::abs(excess) < options.scale_error_sigmas * sigma)
+  if (std::abs(excess) < options.max_scale_error || std::abs(excess) < options.scale_error_sigmas * sigma)
     return;
   result.doubt = fmt::format(
       "the board seems {:.0f} % {} than specified (spacing {:.4g} m): measure it; accelerations "
@@ -128,12 +128,12 @@ void checkBoardScale(const GravityAlignment& gravity, const Board& board,
 bool refineBoardScale(std::vector<CameraTrack> tracks, const CalibrationInput& input,
                       const So3Spline& rotation, const InitialisationOptions& options,
                       const RunContext& context, GravityAlignment& gravity) {
-  constexpr int kMostRounds = 6;
-  constexpr double kLeast = 1e-3;
+  constexpr int kMaxRounds = 6;
+  constexpr double kMin = 1e-3;
   double step = gravity.board_scale, scale = 1.0;
   const bool far = step > options.wrong_size_ratio || step < 1.0 / options.wrong_size_ratio;
   if (!far || std::abs(step - 1.0) < options.scale_error_sigmas * gravity.board_scale_std) return true;
-  for (int round = 0; round < kMostRounds && step > kLeast; ++round) {
+  for (int round = 0; round < kMaxRounds && step > kMin; ++round) {
     for (CameraTrack& track : tracks)
       for (CameraPose& pose : track.poses) pose.world_from_camera.translation_m *= step;
     const GravityAlignment again = alignGravity(tracks, withFitForces(referenceImu(input).samples),

@@ -28,11 +28,11 @@ constexpr std::array kSpacings_s = {kClosestKnots_s, 0.003, 0.0035, 0.004, 0.005
                                     0.020,           0.023, 0.026,  0.030, 0.035,         0.040, 0.045,
                                     0.050,           0.060, 0.070,  0.085, kWidestKnots_s};
 // A spline with fewer samples per knot follows their noise.
-constexpr double kLeastSamples_a_knot = 2.5;
+constexpr double kMinSamples_a_knot = 2.5;
 // Allowed ratios of missed motion to the noise of a sample and to the precision of one view: missed motion
 // repeats with the motion, and does not average out as noise does.
 constexpr double kMissedOfNoise = 0.1, kMissedOfView = 0.04;
-constexpr std::size_t kLeastSamples = 50;
+constexpr std::size_t kMinSamples = 50;
 
 // The spline derivative that a sensor measures: its weights are those of a spline of lower degree.
 enum class Felt { Velocity, Acceleration };
@@ -119,13 +119,13 @@ class Demand {
   // integral.
   Demand(Signal signal, double closest_s, double given_noise, double view)
       : signal_(std::move(signal)), view_(view), closest_(fitSplines(signal_, closest_s)) {
-    constexpr double kLeastFree = 0.05;
-    const double free = std::max(kLeastFree, 1.0 - closest_.points / size());
+    constexpr double kMinFree = 0.05;
+    const double free = std::max(kMinFree, 1.0 - closest_.points / size());
     const double found = std::sqrt(typicalMean(signal_, closest_.squares) / free);
     // A filter in the sensor reduces noise at high frequencies. But a given density with a large margin must
     // not hide the motion.
-    constexpr double kMost = 5.0, kLeast = 0.1;
-    noise_ = std::max({found, std::min(given_noise, kMost * found), kLeast * given_noise});
+    constexpr double kMax = 5.0, kMin = 0.1;
+    noise_ = std::max({found, std::min(given_noise, kMax * found), kMin * given_noise});
   }
 
   KnotDemand widest(std::span<const double> spacings_s) const {
@@ -205,7 +205,7 @@ double closestKnots_s(const ImuData& imu, const SampleSelection& fit) {
     }
     period_s = std::max(period_s, medianOf(std::move(periods_s)));
   }
-  return std::clamp(kLeastSamples_a_knot * period_s, kClosestKnots_s, kWidestKnots_s);
+  return std::clamp(kMinSamples_a_knot * period_s, kClosestKnots_s, kWidestKnots_s);
 }
 
 }  // namespace
@@ -237,7 +237,7 @@ KnotSpacing knotSpacing(const ImuData& imu, std::int64_t start_ns, TimeRange ran
   KnotSpacing found;
   const SampleSelection fit = fitSamples(imu.samples);
   std::array<Signal, 2> signals = signalsOf(imu, fit, start_ns, range, rotation);
-  if (std::min(signals[0].size(), signals[1].size()) < kLeastSamples) {
+  if (std::min(signals[0].size(), signals[1].size()) < kMinSamples) {
     found.rates.spacing_s = found.accelerations.spacing_s = kUsualKnot_s;
     return found;
   }

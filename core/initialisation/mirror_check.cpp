@@ -330,9 +330,8 @@ std::optional<CalibrationError> findMirror(const CalibrationInput& input, const 
 }
 
 bool contradictsHandedness(const AlignedCamera& first, const AlignedCamera& camera, const GyroRotation& gyro,
-                           double longest_gap_s, const InitialisationOptions& options) {
-  if (std::min(first.hand_eye.axis_ratio, camera.hand_eye.axis_ratio) < options.least_axis_ratio)
-    return false;
+                           double max_gap_s, const InitialisationOptions& options) {
+  if (std::min(first.hand_eye.axis_ratio, camera.hand_eye.axis_ratio) < options.min_axis_ratio) return false;
   const auto worldFromFirst = [&](const AlignedCamera& aligned, const CameraPose& pose) {
     return pose.world_from_camera.rotation * aligned.hand_eye.reference_from_sensor.conjugate() *
            gyro.at(pose.time_s + aligned.hand_eye.time_offset_s).conjugate();
@@ -341,13 +340,13 @@ bool contradictsHandedness(const AlignedCamera& first, const AlignedCamera& came
   std::size_t k = 0, turned = 0, compared = 0;
   for (const CameraPose& pose : camera.poses) {
     while (k + 1 < first.poses.size() && first.poses[k].time_s < pose.time_s + shift_s) ++k;
-    if (std::abs(first.poses[k].time_s - pose.time_s - shift_s) > longest_gap_s) continue;
+    if (std::abs(first.poses[k].time_s - pose.time_s - shift_s) > max_gap_s) continue;
     ++compared;
     turned += rotationAngleBetween_rad(worldFromFirst(first, first.poses[k]), worldFromFirst(camera, pose)) >
               kHalfwayToHalfTurn_rad;
   }
   // Cameras that see the board in turns have only few views near each other's, next to gaps of the rotation.
-  const bool enough = static_cast<int>(compared) >= options.least_views && 2 * compared > camera.poses.size();
+  const bool enough = static_cast<int>(compared) >= options.min_views && 2 * compared > camera.poses.size();
   return enough && 2 * turned > compared;
 }
 

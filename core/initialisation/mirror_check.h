@@ -48,10 +48,10 @@ std::optional<CalibrationError> findMirror(const CalibrationInput& input, const 
                                            const RunContext& context);
 
 // True if `camera` sees the board that `first` sees as if from behind: the image of one of them is mirrored.
-// `gyro`: rotation of the rig, known between views that are `longest_gap_s` apart. False if it rotates about one axis
+// `gyro`: rotation of the rig, known between views that are `max_gap_s` apart. False if it rotates about one axis
 // only, which leaves the angles about it free, or if the cameras see the board too far apart in time.
 bool contradictsHandedness(const AlignedCamera& first, const AlignedCamera& camera, const GyroRotation& gyro,
-                           double longest_gap_s, const InitialisationOptions& options);
+                           double max_gap_s, const InitialisationOptions& options);
 
 // The error of such a contradiction, without accelerations.
 CalibrationError mirroredOfTwo(const CalibrationInput& input, const StatedSigns& stated,

@@ -73,7 +73,7 @@ LeftOver leftOver(const std::vector<Turned>& pairs, double determinant) {
 RotationAgreement compareRotations(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                    double time_offset_s, const InitialisationOptions& options) {
   std::vector<Turned> turned;
-  for (const RotationPair& pair : rotationPairs(poses, options.pair_gap_s, options.longest_pair_s)) {
+  for (const RotationPair& pair : rotationPairs(poses, options.pair_gap_s, options.max_pair_s)) {
     const double from_s = pair.from_s + time_offset_s, to_s = pair.to_s + time_offset_s;
     if (!gyro.covers(from_s, to_s)) continue;
     turned.push_back({pair.seen_rad, gyro.between(from_s, to_s)});

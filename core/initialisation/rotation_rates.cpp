@@ -57,13 +57,13 @@ RotationRates rotationRates(const CameraData& camera, const Board& board, const 
   std::vector<CameraPose> poses = estimateCameraPoses(camera, board, options).poses;
   context.throwIfStopped();
   resolveAmbiguousPoses(poses, gyro, camera_state.time_offset_s - imu_state.time_offset_s,
-                        options.longest_pair_s);
+                        options.max_pair_s);
   for (std::size_t k = 0, l = 0; k < poses.size(); ++k) {
     const double begin_s = poses[k].time_s;
     while (l < poses.size() && poses[l].time_s - begin_s < options.pair_gap_s - 1e-6) ++l;
     if (l == poses.size()) break;
     const double end_s = poses[l].time_s, duration_s = end_s - begin_s;
-    if (duration_s > options.longest_pair_s) continue;
+    if (duration_s > options.max_pair_s) continue;
     if (!gyro.covers(begin_s, end_s) || !gyro.covers(imuTime_s(begin_s), imuTime_s(end_s))) continue;
     rates.time_s.push_back(0.5 * (begin_s + end_s));
     rates.camera_rad_s.push_back(
@@ -81,7 +81,7 @@ std::optional<RateRatio> rateRatio(const CameraData& camera, const Board& board,
                                    std::int64_t start_ns, const InitialisationOptions& options,
                                    const RunContext& context) {
   const std::vector<CameraPose> poses = estimateCameraPoses(camera, board, options, context).poses;
-  const std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
+  const std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.max_pair_s);
   std::vector<ImuSample> samples = withoutRateSpikes(imu.samples);
   if (pairs.empty() || samples.size() < 2) return std::nullopt;
   std::vector<double> seen_rad_s, felt_rad_s;
@@ -116,8 +116,7 @@ std::optional<RateRatio> rateRatio(const CameraData& camera, const Board& board,
   const double slope = medianOf(std::move(slopes));
   if (!(slope > 0.0)) return std::nullopt;
   for (const Rotated& each : rotated) rests.push_back((each.seen_rad - slope * each.felt_rad).norm());
-  if (medianOf(std::move(rests)) > options.largest_unexplained_motion * slope * usual_rad)
-    return std::nullopt;
+  if (medianOf(std::move(rests)) > options.max_unexplained_motion * slope * usual_rad) return std::nullopt;
   return RateRatio{first / slope, peaks.front().correlation};
 }
 

@@ -44,7 +44,7 @@ struct Correlation {
 };
 
 Correlation correlationAt(const std::vector<RatePair>& pairs, const RateGrid& grid, double offset_s,
-                          double pairs_per_s, double least_overlap_s) {
+                          double pairs_per_s, double min_overlap_s) {
   double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, syy = 0.0, sxy = 0.0;
   for (const RatePair& pair : pairs) {
     const std::optional<double> felt = grid.at(pair.middle_s + offset_s);
@@ -58,7 +58,7 @@ Correlation correlationAt(const std::vector<RatePair>& pairs, const RateGrid& gr
     sxy += x * y;
   }
   const double overlap_s = n / pairs_per_s;
-  if (overlap_s < least_overlap_s) return {};
+  if (overlap_s < min_overlap_s) return {};
   const double vx = sxx - sx * sx / n, vy = syy - sy * sy / n;
   if (vx <= 0.0 || vy <= 0.0) return {};
   const double value = (sxy - sx * sy / n) / std::sqrt(vx * vy);
@@ -107,7 +107,7 @@ std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& p
                                                 const InitialisationOptions& options,
                                                 const SensorPrior& prior) {
   constexpr double kStep_s = 0.01;
-  std::vector<RatePair> pairs = ratePairs(poses, options.pair_gap_s, options.longest_pair_s);
+  std::vector<RatePair> pairs = ratePairs(poses, options.pair_gap_s, options.max_pair_s);
   if (pairs.empty()) return {};
   double duration_s = 0.0;
   for (const RatePair& pair : pairs) duration_s += pair.duration_s;
@@ -127,7 +127,7 @@ std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& p
   correlations.reserve(static_cast<std::size_t>(2 * steps + 1));
   for (int k = -steps; k <= steps; ++k)
     correlations.push_back(
-        correlationAt(pairs, grid, centre_s + k * kStep_s, pairs_per_s, options.least_overlap_s));
+        correlationAt(pairs, grid, centre_s + k * kStep_s, pairs_per_s, options.min_overlap_s));
   std::vector<TimeOffsetPeak> peaks;
   for (std::size_t i = 0; i < correlations.size(); ++i) {
     const double here = correlations[i].significance;
@@ -138,7 +138,7 @@ std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& p
   }
   std::sort(peaks.begin(), peaks.end(),
             [](const auto& a, const auto& b) { return a.significance > b.significance; });
-  const auto most = static_cast<std::size_t>(options.most_time_offsets);
+  const auto most = static_cast<std::size_t>(options.max_time_offsets);
   if (peaks.size() > most) peaks.resize(most);
   return peaks;
 }
@@ -221,17 +221,17 @@ struct PartLevel {
 };
 
 PartLevel levelOf(const std::vector<OffsetPart>& parts, std::size_t begin, std::size_t end) {
-  constexpr double kLeastSigma_s = 2e-4, kMostSigmas = 6.0;
+  constexpr double kMinSigma_s = 2e-4, kMaxSigmas = 6.0;
   std::vector<double> offsets;
   for (std::size_t k = begin; k < end; ++k) offsets.push_back(parts[k].time_offset_s);
   const double centre_s = medianOf(std::move(offsets));
   double weights = 0.0, sum = 0.0;
   PartLevel level;
   for (std::size_t k = begin; k < end; ++k) {
-    const double sigma_s = std::max(parts[k].time_offset_std_s, kLeastSigma_s);
+    const double sigma_s = std::max(parts[k].time_offset_std_s, kMinSigma_s);
     const double off = (parts[k].time_offset_s - centre_s) / sigma_s;
-    level.chi2 += std::min(off * off, kMostSigmas * kMostSigmas);
-    if (std::abs(off) > kMostSigmas) continue;
+    level.chi2 += std::min(off * off, kMaxSigmas * kMaxSigmas);
+    if (std::abs(off) > kMaxSigmas) continue;
     weights += 1.0 / (sigma_s * sigma_s);
     sum += parts[k].time_offset_s / (sigma_s * sigma_s);
   }
@@ -259,16 +259,16 @@ double chi2OfLine(const std::vector<OffsetPart>& parts) {
 
 std::vector<OffsetPart> offsetsByParts(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                        const RelativeRotation& whole, const InitialisationOptions& options) {
-  std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.longest_pair_s);
+  std::vector<RotationPair> pairs = rotationPairs(poses, options.pair_gap_s, options.max_pair_s);
   std::erase_if(pairs, [&](const RotationPair& pair) {
     return !gyro.covers(pair.from_s + whole.time_offset_s - kReach_s - kPartGrid_s,
                         pair.to_s + whole.time_offset_s + kReach_s + kPartGrid_s);
   });
   std::vector<OffsetPart> parts;
-  constexpr std::size_t kLeastPairs = 8;
+  constexpr std::size_t kMinPairs = 8;
   for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
     while (end < pairs.size() && pairs[end].from_s < pairs[begin].from_s + kPart_s) ++end;
-    if (end - begin < kLeastPairs) continue;
+    if (end - begin < kMinPairs) continue;
     const std::vector<RotationPair> own(pairs.begin() + static_cast<std::ptrdiff_t>(begin),
                                         pairs.begin() + static_cast<std::ptrdiff_t>(end));
     if (const auto part = Part(thinned(own), gyro, whole).offset()) parts.push_back(*part);
@@ -277,12 +277,12 @@ std::vector<OffsetPart> offsetsByParts(const std::vector<CameraPose>& poses, con
 }
 
 std::optional<ClockStep> findClockStep(const std::vector<OffsetPart>& parts) {
-  constexpr double kSure_sigmas = 6.0, kLeastStep_s = 2e-3;
-  constexpr std::size_t kLeastParts = 2;  // on either side: a single part may be wrong
+  constexpr double kSure_sigmas = 6.0, kMinStep_s = 2e-3;
+  constexpr std::size_t kMinParts = 2;  // on either side: a single part may be wrong
   const double one_level = levelOf(parts, 0, parts.size()).chi2;
   std::optional<ClockStep> best;
   double least = one_level;
-  for (std::size_t k = kLeastParts; k + kLeastParts <= parts.size(); ++k) {
+  for (std::size_t k = kMinParts; k + kMinParts <= parts.size(); ++k) {
     const PartLevel before = levelOf(parts, 0, k), after = levelOf(parts, k, parts.size());
     if (before.chi2 + after.chi2 >= least) continue;
     least = before.chi2 + after.chi2;
@@ -292,7 +292,7 @@ std::optional<ClockStep> findClockStep(const std::vector<OffsetPart>& parts) {
   }
   // The residual of two levels must be noise; for drifting clocks it is not.
   constexpr double kFarBetter = 0.5;
-  if (!best || best->sigmas < kSure_sigmas || std::abs(best->step_s) < kLeastStep_s ||
+  if (!best || best->sigmas < kSure_sigmas || std::abs(best->step_s) < kMinStep_s ||
       least > kFarBetter * std::min(one_level, chi2OfLine(parts)))
     return std::nullopt;
   return best;

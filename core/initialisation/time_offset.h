@@ -29,7 +29,7 @@ std::vector<RatePair> ratePairs(const std::vector<CameraPose>& poses, double gap
 
 // Local maxima of the correlation within plus or minus options.time_offset_search_s of the prior's time
 // offset (of 0 without one), the most significant first; only the given offset if there is one. Empty if
-// camera and gyroscope overlap for less than options.least_overlap_s at every offset.
+// camera and gyroscope overlap for less than options.min_overlap_s at every offset.
 std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& poses,
                                                 const GyroRotation& gyro,
                                                 const InitialisationOptions& options,

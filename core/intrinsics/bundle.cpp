@@ -16,7 +16,7 @@
 namespace evical {
 namespace {
 
-constexpr double kLeastScale = 1e-3;
+constexpr double kMinScale = 1e-3;
 
 // Prior of the edge localisation bias, with mean 0.
 class LeadPrior final : public ceres::SizedCostFunction<1, 1> {
@@ -61,8 +61,8 @@ class Adjustment {
 
  private:
   void adjust() {
-    constexpr int kMostRounds = 8;
-    for (int round = 0; round < kMostRounds; ++round) {
+    constexpr int kMaxRounds = 8;
+    for (int round = 0; round < kMaxRounds; ++round) {
       solve();
       if (!updateWeights()) break;
     }
@@ -113,7 +113,7 @@ class Adjustment {
   bool updateWeights() {
     const std::vector<std::vector<double>> normalised2 = errors();
     const double before = bundle_.scale;
-    bundle_.scale = std::max(scaleOf(normalised2), kLeastScale);
+    bundle_.scale = std::max(scaleOf(normalised2), kMinScale);
     constexpr double kNoticeable = 0.02;
     bool changed = std::abs(bundle_.scale / before - 1.0) > kNoticeable;
     const double bound2 = std::pow(options_.outlier_sigma * bundle_.scale, 2);

@@ -20,16 +20,16 @@ namespace {
 
 void checkCount(const std::vector<SensorView>& views, std::size_t count, const char* what,
                 const IntrinsicsInput& input, const IntrinsicsOptions& options, std::size_t close = 0) {
-  if (static_cast<int>(count) >= options.least_views) return;
+  if (static_cast<int>(count) >= options.min_views) return;
   const std::string missing = missingPlaces(views, input.resolution_px);
   throw calibrationFailed(
       input.observations.camera,
-      fmt::format(
-          "only {} at least {:.0f} % of the board, but {} are needed for intrinsics{}{}",
-          counted(count, what, "shows", "show"), 100.0 * options.least_circles, options.least_views,
-          close == 0 ? ""
-                     : fmt::format("; {} more are within {} s of these", close, options.least_view_spacing_s),
-          missing.empty() ? "" : "; none reaches " + missing),
+      fmt::format("only {} at least {:.0f} % of the board, but {} are needed for intrinsics{}{}",
+                  counted(count, what, "shows", "show"), 100.0 * options.min_circles, options.min_views,
+                  close == 0
+                      ? ""
+                      : fmt::format("; {} more are within {} s of these", close, options.min_view_spacing_s),
+                  missing.empty() ? "" : "; none reaches " + missing),
       "Move the board through the whole image for at least 20 s, and keep it completely in view most of the "
       "time");
 }
@@ -190,22 +190,21 @@ IntrinsicsResult estimateIntrinsics(const IntrinsicsInput& input, const Intrinsi
 std::optional<RoughCamera> roughCamera(const std::vector<SensorView>& all, const Board& board,
                                        const CameraIntrinsics& guess, const IntrinsicsOptions& options,
                                        const RunContext& context) {
-  constexpr std::size_t kLeastViews = 4, kMostViews = 40;
-  constexpr int kMostIterations = 15;        // convergence along a valley is left to the whole recording
-  constexpr bool kWideToo = false;           // the front end sees up to 85 degrees, where a pinhole suffices
-  constexpr double kMostFocalLength = 20.0;  // image widths: similar views can diverge
-  if (all.size() < kLeastViews) return std::nullopt;
+  constexpr std::size_t kMinViews = 4, kMaxViews = 40;
+  constexpr int kMaxIterations = 15;        // convergence along a valley is left to the whole recording
+  constexpr bool kWideToo = false;          // the front end sees up to 85 degrees, where a pinhole suffices
+  constexpr double kMaxFocalLength = 20.0;  // image widths: similar views can diverge
+  if (all.size() < kMinViews) return std::nullopt;
   std::vector<SensorView> views;
-  const std::size_t every = (all.size() + kMostViews - 1) / kMostViews;
+  const std::size_t every = (all.size() + kMaxViews - 1) / kMaxViews;
   for (std::size_t k = 0; k < all.size(); k += every) views.push_back(all[k]);
   IntrinsicsOptions rough = options;
-  rough.max_iterations = std::min(options.max_iterations, kMostIterations);
+  rough.max_iterations = std::min(options.max_iterations, kMaxIterations);
   const Bundle bundle = solve(views, {board, guess.resolution_px, guess, rough, context, kWideToo}).bundle;
   const CameraIntrinsics& camera = bundle.intrinsics;
-  const bool sane =
-      camera.focal_length_px.allFinite() && camera.focal_length_px.minCoeff() > 1.0 &&
-      idealFocalLength_px(camera).maxCoeff() < kMostFocalLength * guess.resolution_px.width_px &&
-      unproject(camera, camera.principal_point_px);
+  const bool sane = camera.focal_length_px.allFinite() && camera.focal_length_px.minCoeff() > 1.0 &&
+                    idealFocalLength_px(camera).maxCoeff() < kMaxFocalLength * guess.resolution_px.width_px &&
+                    unproject(camera, camera.principal_point_px);
   if (!sane || bundle.circlesUsed() == 0) return std::nullopt;
   const BundleUncertainty uncertainty = bundleUncertainty(bundle, board, options);
   if (uncertainty.normalised_rms == 0.0) return std::nullopt;  // not more circles than unknowns

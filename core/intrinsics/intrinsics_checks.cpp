@@ -152,7 +152,7 @@ std::vector<IntrinsicsView> viewsOf(const Bundle& bundle, const Board& board) {
 void checkTilts(const Bundle& bundle, double focal_length_relative_std, const IntrinsicsOptions& options) {
   constexpr double kUseless = 0.05;
   const double largest_deg = largestTilt_deg(bundle);
-  if (largest_deg >= options.least_tilt_deg && focal_length_relative_std < kUseless) return;
+  if (largest_deg >= options.min_tilt_deg && focal_length_relative_std < kUseless) return;
   throw calibrationFailed(
       "intrinsics",
       fmt::format("the focal length is not observable: its sigma is {:.1f} %, and the board's largest tilt "

@@ -29,13 +29,13 @@ constexpr std::tuple kIntrinsicsFields{
           "Largest number of slices with the board in the first look."},
     Field{"first_look_projection_px", &IntrinsicsOptions::first_look_projection_px, 0.2, within(1e-3, 100.0),
           "px", "Projection uncertainty, RMS over the image, at which the first look ends."},
-    Field{"least_views", &IntrinsicsOptions::least_views, 10, within(3, 1000), "",
+    Field{"min_views", &IntrinsicsOptions::min_views, 10, within(3, 1000), "",
           "Smallest number of views for a result.", Level::Expert},
-    Field{"most_views", &IntrinsicsOptions::most_views, 80, within(3, 1000), "",
+    Field{"max_views", &IntrinsicsOptions::max_views, 80, within(3, 1000), "",
           "Largest number of used views, spread over image and tilt.", Level::Expert},
-    Field{"least_view_spacing_s", &IntrinsicsOptions::least_view_spacing_s, 0.1, within(0.0, 10.0), "s",
+    Field{"min_view_spacing_s", &IntrinsicsOptions::min_view_spacing_s, 0.1, within(0.0, 10.0), "s",
           "Smallest interval between used views; closer ones are redundant."},
-    Field{"least_circles", &IntrinsicsOptions::least_circles, 0.5, within(0.1, 1.0), "",
+    Field{"min_circles", &IntrinsicsOptions::min_circles, 0.5, within(0.1, 1.0), "",
           "Smallest share of the board's circles in a view."},
     Field{"huber_sigma", &IntrinsicsOptions::huber_sigma, 2.5, within(0.5, 100.0), "sigma",
           "Huber threshold of a circle's error."},
@@ -43,7 +43,7 @@ constexpr std::tuple kIntrinsicsFields{
           "Largest error of a used circle, in units of the spread of all errors."},
     Field{"outlier_view_fraction", &IntrinsicsOptions::outlier_view_fraction, 0.5, within(0.1, 1.0), "",
           "Largest share of rejected circles in a used view."},
-    Field{"least_centre_sigma_px", &IntrinsicsOptions::least_centre_sigma_px, 0.01, within(0.0, 10.0), "px",
+    Field{"min_centre_sigma_px", &IntrinsicsOptions::min_centre_sigma_px, 0.01, within(0.0, 10.0), "px",
           "Sigma whose square is added to the covariance of each measured centre."},
     Field{"edge_localisation_bias_sigma_px", &IntrinsicsOptions::edge_localisation_bias_sigma_px, 0.5,
           within(1e-6, 10.0), "px",
@@ -55,7 +55,7 @@ constexpr std::tuple kIntrinsicsFields{
           "allow for it."},
     Field{"max_iterations", &IntrinsicsOptions::max_iterations, 60, within(1, 1000), "",
           "Largest number of iterations of one solution."},
-    Field{"most_passes", &IntrinsicsOptions::most_passes, 4, within(1, 20), "",
+    Field{"max_passes", &IntrinsicsOptions::max_passes, 4, within(1, 20), "",
           "Largest number of passes in which circles are refitted in undistorted pixels."},
     Field{"settled_px", &IntrinsicsOptions::settled_px, 0.01, within(1e-4, 1.0), "px",
           "Change of the projection by a pass, RMS over the image, below which passes end."},
@@ -64,7 +64,7 @@ constexpr std::tuple kIntrinsicsFields{
     Field{"needed_projection_px", &IntrinsicsOptions::needed_projection_px, 0.5, within(1e-3, 100.0), "px",
           "Required projection uncertainty, RMS over the image; above it the result is doubtful.",
           Level::Public},
-    Field{"least_tilt_deg", &IntrinsicsOptions::least_tilt_deg, 12.0, within(0.0, 80.0), "deg",
+    Field{"min_tilt_deg", &IntrinsicsOptions::min_tilt_deg, 12.0, within(0.0, 80.0), "deg",
           "Largest tilt in all views below which the focal length is not observable."}};
 constexpr auto kIntrinsicsDefaults = defaultsOf<IntrinsicsOptions, kIntrinsicsFields>();
 
@@ -76,7 +76,7 @@ const OptionTable<IntrinsicsOptions>& IntrinsicsOptions::table() {
   static const OptionTable<IntrinsicsOptions> table(
       kIntrinsicsFields,
       Ordered{&IntrinsicsOptions::first_look_length_s, &IntrinsicsOptions::first_look_period_s},
-      Ordered{&IntrinsicsOptions::least_views, &IntrinsicsOptions::most_views});
+      Ordered{&IntrinsicsOptions::min_views, &IntrinsicsOptions::max_views});
   return table;
 }
 

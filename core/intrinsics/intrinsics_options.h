@@ -17,23 +17,23 @@ struct IntrinsicsOptions {
   double first_look_length_s;
   int first_look_slices;
   double first_look_projection_px;
-  int least_views;
-  int most_views;
-  double least_view_spacing_s;
-  double least_circles;
+  int min_views;
+  int max_views;
+  double min_view_spacing_s;
+  double min_circles;
   double huber_sigma;
   double outlier_sigma;
   double outlier_view_fraction;
-  double least_centre_sigma_px;
+  double min_centre_sigma_px;
   double edge_localisation_bias_sigma_px;
   double correlation_time_s;
   double place_error_px;
   int max_iterations;
-  int most_passes;
+  int max_passes;
   double settled_px;
   double needed_focal_length;
   double needed_projection_px;
-  double least_tilt_deg;
+  double min_tilt_deg;
 
   IntrinsicsOptions();  // the defaults
   constexpr explicit IntrinsicsOptions(NoDefaults) {}

@@ -31,8 +31,8 @@ CameraIntrinsics plain(CameraModel model, Resolution resolution_px) {
 }
 
 std::optional<CameraIntrinsics> byOpenCv(const std::vector<SensorView>& views, Resolution resolution_px) {
-  constexpr std::size_t kMostViews = 30;
-  const std::size_t every = views.size() / kMostViews + 1;
+  constexpr std::size_t kMaxViews = 30;
+  const std::size_t every = views.size() / kMaxViews + 1;
   std::vector<std::vector<cv::Point3f>> on_board;
   std::vector<std::vector<cv::Point2f>> pixels;
   for (std::size_t v = 0; v < views.size(); v += every) {
@@ -79,9 +79,9 @@ std::vector<CameraIntrinsics> wideGuesses(CameraModel model, Resolution resoluti
 // it does not see.
 double startError_px(const CameraIntrinsics& camera, const std::vector<SensorView>& views,
                      const Board& board) {
-  constexpr std::size_t kMostViews = 20;
+  constexpr std::size_t kMaxViews = 20;
   std::vector<double> errors_px;
-  for (std::size_t v = 0; v < views.size(); v += views.size() / kMostViews + 1) {
+  for (std::size_t v = 0; v < views.size(); v += views.size() / kMaxViews + 1) {
     const auto pose = boardPose(views[v], board, camera);
     for (const SensorCircle& circle : views[v].circles) {
       const Eigen::Vector3d on_board(circle.on_board_m.x(), circle.on_board_m.y(), 0.0);
@@ -115,12 +115,12 @@ CameraIntrinsics otherSide(const CameraIntrinsics& sphere) {
   const double xi = sphere.distortion[0] < 0.0 ? kXi : -kXi;
   CameraIntrinsics nearest = sphere, side = sphere;
   side.focal_length_px = (1.0 + xi) * idealFocalLength_px(sphere);
-  double least_px = std::numeric_limits<double>::infinity();
+  double min_px = std::numeric_limits<double>::infinity();
   for (double alpha = 0.3; alpha < 0.95; alpha += kStep) {
     side.distortion = {xi, alpha, 0.0, 0.0, 0.0};
     const ProjectionDifference difference = projectionDifference(sphere, side);
-    if (difference.places == 0 || difference.rms_px >= least_px) continue;
-    least_px = difference.rms_px;
+    if (difference.places == 0 || difference.rms_px >= min_px) continue;
+    min_px = difference.rms_px;
     nearest = side;
   }
   return nearest;
@@ -214,7 +214,7 @@ std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const 
     return sum + full / (1.0 + of_tilt[candidate.tilt]);
   };
   std::vector<SensorView> selected;
-  while (static_cast<int>(selected.size()) < options.most_views) {
+  while (static_cast<int>(selected.size()) < options.max_views) {
     Candidate* best = nullptr;
     double most = 0.0;
     for (Candidate& candidate : candidates) {
@@ -230,8 +230,8 @@ std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const 
     for (const std::size_t cell : best->cells) ++in_cell[cell];
     ++of_tilt[best->tilt];
     for (Candidate& candidate : candidates)
-      candidate.too_near = candidate.too_near || std::abs(candidate.view->time_s - best->view->time_s) <
-                                                     options.least_view_spacing_s;
+      candidate.too_near = candidate.too_near ||
+                           std::abs(candidate.view->time_s - best->view->time_s) < options.min_view_spacing_s;
   }
   std::sort(selected.begin(), selected.end(),
             [](const SensorView& a, const SensorView& b) { return a.time_s < b.time_s; });

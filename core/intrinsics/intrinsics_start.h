@@ -34,7 +34,7 @@ CameraIntrinsics roughStart(const std::vector<SensorView>& views, const Board& b
 
 // Selection of the most informative views of a recording: spread over the image and over the board's tilt.
 
-// At most options.most_views of them, in time order; deterministic. Tilts are computed with `camera`, which
+// At most options.max_views of them, in time order; deterministic. Tilts are computed with `camera`, which
 // may be approximate.
 std::vector<SensorView> selectViews(const std::vector<SensorView>& views, const Board& board,
                                     const CameraIntrinsics& camera, const IntrinsicsOptions& options);

@@ -29,7 +29,7 @@ SensorCircle sensorCircle(const CircleObservation& circle, double time_s, const 
     out.centre_px = pixelFromIdeal(*detection_intrinsics, ideal);
     sensor_from_ideal = idealPixelScale(*detection_intrinsics, ideal).inverse();
   }
-  const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
+  const double floor_px2 = options.min_centre_sigma_px * options.min_centre_sigma_px;
   out.covariance_px2 = sensor_from_ideal * circle.covariance_px2 * sensor_from_ideal.transpose() +
                        floor_px2 * Eigen::Matrix2d::Identity();
   out.lead_effect = sensor_from_ideal * circle.edge_localisation_bias_effect;
@@ -42,7 +42,7 @@ std::vector<SensorView> sensorViews(const BoardObservations& observations, const
                                     const std::optional<CameraIntrinsics>& detection_intrinsics,
                                     const IntrinsicsOptions& options) {
   std::vector<SensorView> views;
-  const double least = std::max(4.0, options.least_circles * board.pointCount());
+  const double least = std::max(4.0, options.min_circles * board.pointCount());
   for (const BoardView& view : observations.views) {
     if (static_cast<double>(view.circles.size()) < least) continue;
     SensorView& out = views.emplace_back();
@@ -92,12 +92,12 @@ double refine(const std::vector<Ray>& rays, double radius_m, RigidTransform& pos
 Eigen::Quaterniond turnTowards(const std::vector<Eigen::Vector3d>& directions) {
   constexpr double kNear = 0.5;  // cosine of 60 degrees
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double least_z = 1.0;
+  double min_z = 1.0;
   for (const Eigen::Vector3d& direction : directions) {
     sum += direction;
-    least_z = std::min(least_z, direction.z());
+    min_z = std::min(min_z, direction.z());
   }
-  if (least_z > kNear || sum.norm() < kNear) return Eigen::Quaterniond::Identity();
+  if (min_z > kNear || sum.norm() < kNear) return Eigen::Quaterniond::Identity();
   return rotationBetween(sum, Eigen::Vector3d::UnitZ());
 }
 
@@ -118,9 +118,9 @@ std::optional<RigidTransform> boardPose(const SensorView& view, const Board& boa
   }
   const Eigen::Quaterniond turned_from_camera = turnTowards(directions);
   for (std::size_t k = 0; k < seen.size(); ++k) {
-    constexpr double kLeastZ = 0.08;  // 85 degrees off the axis
+    constexpr double kMinZ = 0.08;  // 85 degrees off the axis
     const Eigen::Vector3d turned = turned_from_camera * directions[k];
-    if (turned.z() < kLeastZ) continue;
+    if (turned.z() < kMinZ) continue;
     const Eigen::Vector2d& at_m = seen[k]->on_board_m;
     rays.push_back({at_m, turned.hnormalized()});
     on_board.emplace_back(at_m.x(), at_m.y(), 0.0);

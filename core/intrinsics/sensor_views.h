@@ -31,7 +31,7 @@ struct SensorView {
 };
 
 // `detection_intrinsics`: the camera whose ideal pixels the observations are in; none: they are the sensor's.
-// Views with fewer circles than options.least_circles are excluded.
+// Views with fewer circles than options.min_circles are excluded.
 std::vector<SensorView> sensorViews(const BoardObservations& observations, const Board& board,
                                     const std::optional<CameraIntrinsics>& detection_intrinsics,
                                     const IntrinsicsOptions& options);

@@ -40,8 +40,8 @@ Moments momentsAt(const std::vector<double>& reference, const std::vector<double
 void AngularSpeedSeries::add(double time_s, const Eigen::Vector3d& rate_rad_s) {
   const long bin = std::lround(std::floor(time_s / kBin_s));
   if (sums_.empty()) first_ = bin;
-  constexpr long kMost = 100'000;  // a thousand seconds
-  if (bin < first_ || bin - first_ >= kMost) return;
+  constexpr long kMax = 100'000;  // a thousand seconds
+  if (bin < first_ || bin - first_ >= kMax) return;
   const auto place = static_cast<std::size_t>(bin - first_);
   if (place >= sums_.size()) {
     sums_.resize(place + 1, 0.0);
@@ -70,7 +70,7 @@ ClockAgreement crossCorrelateClocks(const AngularSpeedSeries& reference, const A
   for (long lag = -reach; lag <= reach; ++lag) {
     const Moments sum = momentsAt(a, b, lag - between);
     const bool enough =
-        sum.count >= kFewest && std::sqrt(std::max(sum.varianceA(), 0.0)) > options.least_rate_rad_s;
+        sum.count >= kFewest && std::sqrt(std::max(sum.varianceA(), 0.0)) > options.min_rate_rad_s;
     correlations.push_back(enough ? sum.correlation() : kNone);
     if (!enough) continue;
     best.moved = true;

@@ -12,8 +12,8 @@ constexpr std::tuple kFields{
           "Norm of gravity at the place of the log; 0: as in the old result. Its error is absorbed by "
           "the accelerometers' scales.",
           Level::Public},
-    Field{"shortest_stop_s", &Options::shortest_stop_s, 1.5, within(0.5, 1000.0), "s",
-          "Shortest stop that is used.", Level::Expert},
+    Field{"min_stop_s", &Options::min_stop_s, 1.5, within(0.5, 1000.0), "s", "Shortest stop that is used.",
+          Level::Expert},
     Field{"still_rate_deg_s", &Options::still_rate_deg_s, 0.5, within(0.01, 20.0), "deg/s",
           "Tolerance of a stop's mean angular rates: four times this within a stop, "
           "twice this between stops."},
@@ -55,7 +55,7 @@ constexpr std::tuple kFields{
           "Largest change of time offsets from those of the old result.", Level::Expert},
     Field{"time_offset_drift_ppm", &Options::time_offset_drift_ppm, 100.0, within(0.001, 1e5), "ppm",
           "Prior sigma of the drift of time offsets since the log's start."},
-    Field{"least_rate_rad_s", &Options::least_rate_rad_s, 0.02, within(1e-4, 10.0), "rad/s",
+    Field{"min_rate_rad_s", &Options::min_rate_rad_s, 0.02, within(1e-4, 10.0), "rad/s",
           "Smallest variation of the norm of rates that determines a clock offset."},
     Field{"same_motion", &Options::same_motion, 0.7, within(0.1, 1.0), "",
           "Smallest correlation of the rates of IMUs on one body with consistent clocks."},

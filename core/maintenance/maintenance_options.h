@@ -7,7 +7,7 @@ namespace evical {
 
 struct MaintenanceOptions {
   double gravity_m_s2;
-  double shortest_stop_s;
+  double min_stop_s;
   double still_rate_deg_s;
   double still_force_m_s2;
   double stop_above_quietest;
@@ -25,7 +25,7 @@ struct MaintenanceOptions {
   double trajectory_lever_mm;
   double time_offset_search_s;
   double time_offset_drift_ppm;
-  double least_rate_rad_s;
+  double min_rate_rad_s;
   double same_motion;
   double restless_window;
   double mostly_noise;

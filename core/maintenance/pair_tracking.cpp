@@ -270,8 +270,8 @@ PairVector pairStability(const MaintenanceOptions& options) {
       1e-3 * options.stability_time_offset_ms,
       Eigen::Vector3d::Constant(options.stability_gyroscope_bias_rad_s),
       Eigen::Vector3d::Constant(options.stability_accelerometer_bias_m_s2);
-  constexpr double kLeast = 1e-9;
-  return stability.cwiseMax(kLeast).cwiseAbs2();
+  constexpr double kMin = 1e-9;
+  return stability.cwiseMax(kMin).cwiseAbs2();
 }
 
 PairTrack trackPair(std::span<const PairWindow> windows, const PairModel& model, double alarm_probability,
@@ -316,10 +316,10 @@ OwnFit ownFit(const PairEquations& equations) {
   const PairMatrix scaled = scale.asDiagonal() * equations.information * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<PairMatrix> eigen(scaled);
   const PairVector along = eigen.eigenvectors().transpose() * scale.cwiseProduct(equations.score);
-  constexpr double kLeast = 1e-8;
+  constexpr double kMin = 1e-8;
   OwnFit fit{equations.squares, equations.count};
   for (Eigen::Index i = 0; i < kPairNumbers; ++i) {
-    if (eigen.eigenvalues()[i] < kLeast) continue;
+    if (eigen.eigenvalues()[i] < kMin) continue;
     fit.squares -= along[i] * along[i] / eigen.eigenvalues()[i];
     --fit.freedom;
   }
@@ -389,9 +389,9 @@ WeighedWindows weighed(std::span<const PairWindow> windows, const PairModel& mod
     rates.push_back(ownFit(window.gyroscope));
     forces.push_back(ownFit(window.accelerometer));
   }
-  constexpr double kLeast = 1e-20;
-  const double rate_variance = std::max(typicalVariance(rates), kLeast),
-               force_variance = std::max(typicalVariance(forces), kLeast);
+  constexpr double kMin = 1e-20;
+  const double rate_variance = std::max(typicalVariance(rates), kMin),
+               force_variance = std::max(typicalVariance(forces), kMin);
   WeighedWindows all;
   all.gyroscope_noise_rad_s = std::sqrt(rate_variance);
   all.accelerometer_noise_m_s2 = std::sqrt(force_variance);

@@ -75,8 +75,8 @@ StopNoise noiseOf(std::span<const MeansWindow> windows, std::span<const StopRang
   };
   inflate(noise.rate, rate_pairs);
   inflate(noise.force, force_pairs);
-  constexpr double kLeastVariance = 1e-12;
-  noise.force = noise.force.cwiseMax(kLeastVariance);
+  constexpr double kMinVariance = 1e-12;
+  noise.force = noise.force.cwiseMax(kMinVariance);
   return noise;
 }
 

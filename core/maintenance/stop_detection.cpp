@@ -55,15 +55,15 @@ double lowQuantile(std::span<const MeansWindow> windows, const std::vector<doubl
 std::vector<bool> stillWindows(std::span<const MeansWindow> windows, double above_quietest,
                                const MaintenanceOptions& options) {
   // Quantised values may have zero variance in a window.
-  constexpr double kLeast = 1e-10;
+  constexpr double kMin = 1e-10;
   const std::vector<double> forces = smoothed(windows, &MeansWindow::force_variance),
                             rates = smoothed(windows, &MeansWindow::rate_variance);
-  const double most_force = std::min(above_quietest * std::max(lowQuantile(windows, forces), kLeast),
-                                     options.stop_force_m_s2 * options.stop_force_m_s2);
-  const double most_rate = options.stop_rate_rad_s * options.stop_rate_rad_s;
+  const double max_force = std::min(above_quietest * std::max(lowQuantile(windows, forces), kMin),
+                                    options.stop_force_m_s2 * options.stop_force_m_s2);
+  const double max_rate = options.stop_rate_rad_s * options.stop_rate_rad_s;
   std::vector<bool> still;
   for (std::size_t i = 0; i < windows.size(); ++i)
-    still.push_back(hasBoth(windows[i]) && forces[i] <= most_force && rates[i] <= most_rate);
+    still.push_back(hasBoth(windows[i]) && forces[i] <= max_force && rates[i] <= max_rate);
   return still;
 }
 
@@ -150,7 +150,7 @@ std::vector<StopRange> findStops(std::span<const MeansWindow> windows, double ab
   const std::vector<bool> still = stillWindows(windows, above_quietest, options);
   const double still_rate = options.still_rate_deg_s * kRadPerDeg;
   std::vector<StopRange> stops;
-  const auto fewest = static_cast<std::size_t>(std::ceil(options.shortest_stop_s / WindowMeans::kLength_s));
+  const auto fewest = static_cast<std::size_t>(std::ceil(options.min_stop_s / WindowMeans::kLength_s));
   for (std::size_t begin = 0; begin < windows.size();) {
     RunMeans means;
     std::size_t end = begin;

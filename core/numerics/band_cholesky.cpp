@@ -44,7 +44,7 @@ bool BandCholesky::factoriseRow(Eigen::Index row) {
   return factoriseRow(row, 0.0, kNothingLeft);
 }
 
-bool BandCholesky::factoriseRow(Eigen::Index index, double added, double least_share) {
+bool BandCholesky::factoriseRow(Eigen::Index index, double added, double min_share) {
   double* const of_row = row(index);
   const Eigen::Index first = firstOf(index);
   for (Eigen::Index col = first; col < index; ++col) {
@@ -53,7 +53,7 @@ bool BandCholesky::factoriseRow(Eigen::Index index, double added, double least_s
   }
   const double diagonal = of_row[index] + added;
   const double pivot = diagonal - dotOf(of_row, of_row, first, index);
-  const bool known = pivot > least_share * diagonal && std::isfinite(pivot);
+  const bool known = pivot > min_share * diagonal && std::isfinite(pivot);
   of_row[index] = known ? std::sqrt(pivot) : kHugePivot;
   return known;
 }

@@ -34,8 +34,8 @@ class BandCholesky {
   // their solution is 0 instead of infinite.
   bool factorise();
   // Factors one row after the rows before it, with `added` on its diagonal. The pivot has no information if
-  // it is less than `least_share` of the diagonal.
-  bool factoriseRow(Eigen::Index row, double added, double least_share);
+  // it is less than `min_share` of the diagonal.
+  bool factoriseRow(Eigen::Index row, double added, double min_share);
   bool factoriseRow(Eigen::Index row);
 
   // Replaces `right` (size x any) by the solution.

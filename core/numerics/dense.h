@@ -27,7 +27,7 @@ Eigen::MatrixXd congruence(const Eigen::MatrixXd& a, const Eigen::MatrixXd& m); 
 class ScaledInverse {
  public:
   explicit ScaledInverse(const Eigen::MatrixXd& symmetric)
-      : scale_(symmetric.diagonal().cwiseMax(kLeastDiagonal).cwiseSqrt().cwiseInverse()),
+      : scale_(symmetric.diagonal().cwiseMax(kMinDiagonal).cwiseSqrt().cwiseInverse()),
         solver_(scale_.asDiagonal() * symmetric * scale_.asDiagonal()) {}
 
   Eigen::MatrixXd times(const Eigen::MatrixXd& right) const {
@@ -42,7 +42,7 @@ class ScaledInverse {
   }
 
  private:
-  static constexpr double kLeastDiagonal = 1e-300;
+  static constexpr double kMinDiagonal = 1e-300;
 
   Eigen::VectorXd scale_;
   Eigen::LDLT<Eigen::MatrixXd> solver_;

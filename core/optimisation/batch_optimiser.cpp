@@ -24,7 +24,7 @@ namespace {
 // polynomial does not describe the trajectory there: they are assigned again at once.
 constexpr double kFurthestDrift_knots = 0.5;
 // Bounds of the noise scales, so that a sensor with another fault neither dominates nor loses all weight.
-constexpr double kLeastScale = 0.05, kLargestScale = 1000.0;
+constexpr double kMinScale = 0.05, kLargestScale = 1000.0;
 
 // Name for people.
 std::string wordsOf(const QuantityInfo& info) {
@@ -217,7 +217,7 @@ bool Batch::updateWeights(const std::vector<CircleError>& errors) {
   const auto update = [&](std::vector<double>& old, const std::vector<double>& fresh) {
     constexpr double kNoticeable = 0.05;
     for (std::size_t i = 0; i < old.size(); ++i) {
-      const double scale = std::clamp(fresh[i], kLeastScale, kLargestScale);
+      const double scale = std::clamp(fresh[i], kMinScale, kLargestScale);
       changed = changed || std::abs(scale / old[i] - 1.0) > kNoticeable;
       old[i] = scale;
     }
@@ -237,10 +237,10 @@ bool Batch::updateWeights(const std::vector<CircleError>& errors) {
 
 // Circles change little by it, so the batch is not solved again.
 void Batch::updateSmoothness() {
-  constexpr double kLeast = 1e-4;
+  constexpr double kMin = 1e-4;
   const TrajectorySmoothness found = trajectorySmoothness(input_, problem_.state());
   const auto scale = [&](double measured, double largest) {
-    return std::clamp(options_.smooth_unevenness * measured / largest, kLeast, 1.0);
+    return std::clamp(options_.smooth_unevenness * measured / largest, kMin, 1.0);
   };
   weights_.scales.smooth_rotation = scale(found.rotation_rad_s2, options_.smooth_rotation_rad_s2);
   weights_.scales.smooth_position = scale(found.position_m_s2, options_.smooth_position_m_s2);
@@ -306,9 +306,9 @@ void Batch::solveLastStage() {
   const auto solve = [&](const SolverLimits& limits) {
     solveStage(all.back(), static_cast<int>(all.size()), limits);
   };
-  constexpr int kMostReweightings = 3;
+  constexpr int kMaxReweightings = 3;
   bool changed = true;
-  for (int i = 1; i < kMostReweightings && changed; ++i) {
+  for (int i = 1; i < kMaxReweightings && changed; ++i) {
     solve(loosely(options_));
     changed = updateWeights();
   }

@@ -70,7 +70,7 @@ void placeBiasKnots(const OptimisationOptions& options, const ImuNoise& noise, c
   const double spacing_s = std::min({options.bias_knot_spacing_s, noise.gyroscope_density / walks.gyroscope,
                                      noise.accelerometer_density / walks.accelerometer});
   const int steps =
-      static_cast<int>(std::clamp(std::round(duration_s / spacing_s), 1.0, options.most_bias_knots - 1.0));
+      static_cast<int>(std::clamp(std::round(duration_s / spacing_s), 1.0, options.max_bias_knots - 1.0));
   drift.start_s = sensorTime_s(imu, trajectory.start_s);
   drift.knot_spacing_s = duration_s / steps;
   drift.gyroscope_rad_s.assign(static_cast<std::size_t>(steps) + 1, Eigen::Vector3d::Zero());

@@ -13,7 +13,7 @@
 namespace evical {
 namespace {
 
-constexpr Eigen::Index kMostModes = 32, kMotions = 6;
+constexpr Eigen::Index kMaxModes = 32, kMotions = 6;
 
 // (1 / sqrt(1 + l) - 1) / l, also for small l.
 double gainOf(double l) {
@@ -72,13 +72,13 @@ double fieldCovariance(double distance_spacings, const ModelOptions& options) {
 // An incomplete Cholesky factor of the kernel, with the largest remaining variance next.
 FieldModes fieldRoot(const Board& board, const ModelOptions& options) {
   constexpr double kNegligible = 0.01;  // of the variance
-  constexpr Eigen::Index kMost = 64;
+  constexpr Eigen::Index kMax = 64;
   const std::vector<Eigen::Vector2d> points_m = boardPoints_m(board);
   const auto n = static_cast<Eigen::Index>(points_m.size());
   const auto point_m = [&](Eigen::Index i) { return points_m[static_cast<std::size_t>(i)]; };
   FieldModes factor(n, 0);
   Eigen::VectorXd left = Eigen::VectorXd::Ones(n), column(n);
-  for (Eigen::Index at = 0; factor.cols() < std::min(n, kMost) && left.maxCoeff(&at) > kNegligible;) {
+  for (Eigen::Index at = 0; factor.cols() < std::min(n, kMax) && left.maxCoeff(&at) > kNegligible;) {
     for (Eigen::Index i = 0; i < n; ++i)
       column[i] = fieldCovariance((point_m(i) - point_m(at)).norm() / board.spacing_m, options);
     column -= factor * factor.row(at).transpose();
@@ -97,7 +97,7 @@ FieldModes fieldModes(const Board& board, const ModelOptions& options) {
   const FieldModes all = factor * eigen.eigenvectors().rowwise().reverse();
   Eigen::VectorXd left = Eigen::VectorXd::Ones(factor.rows());
   Eigen::Index count = 0;
-  while (count < std::min(all.cols(), kMostModes) && left.maxCoeff() > options.displacement_remainder)
+  while (count < std::min(all.cols(), kMaxModes) && left.maxCoeff() > options.displacement_remainder)
     left -= all.col(count++).cwiseAbs2();
   return all.leftCols(count);
 }
@@ -116,7 +116,7 @@ void DisplacementField::whiten(double* matrix, Eigen::Index columns) const {
   constexpr Eigen::Index kAtOnce = 32, kFour = 4;
   const Eigen::Index circles = by_circle_.rows(), modes = by_circle_.cols(), width = 2 * columns;
   if (circles == 0) return;
-  std::array<double, kAtOnce * kMostModes> sums, gained;  // filled below, as far as there are modes
+  std::array<double, kAtOnce * kMaxModes> sums, gained;  // filled below, as far as there are modes
   for (Eigen::Index first = 0; first < width; first += kAtOnce) {
     const Eigen::Index count = std::min(kAtOnce, width - first);
     double* const numbers = matrix + first;
@@ -192,10 +192,10 @@ double FieldSize::misfit(double size) const {
 }
 
 double FieldSize::mostProbable() const {
-  constexpr double kLeast = 0.1, kMost = 10.0, kStep = 1.05;
+  constexpr double kMin = 0.1, kMax = 10.0, kStep = 1.05;
   if (count_ <= 0.0) return 1.0;
   double best = 1.0, least = misfit(best);
-  for (double size = kLeast; size < kMost; size *= kStep) {
+  for (double size = kMin; size < kMax; size *= kStep) {
     const double here = misfit(size);
     if (here >= least) continue;
     least = here;

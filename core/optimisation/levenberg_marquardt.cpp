@@ -13,12 +13,12 @@ namespace evical {
 namespace {
 
 constexpr double kFirstRadius = 1e12;  // weak directions (biases, gravity) need undamped steps
-constexpr double kLargestRadius = 1e16, kLeastRadius = 1e-32;
-constexpr double kLeastDiagonal = 1e-6, kLargestDiagonal = 1e32;  // of scaled columns
-constexpr double kLeastGain = 1e-3;  // of the predicted decrease; otherwise the step is rejected
+constexpr double kLargestRadius = 1e16, kMinRadius = 1e-32;
+constexpr double kMinDiagonal = 1e-6, kLargestDiagonal = 1e32;  // of scaled columns
+constexpr double kMinGain = 1e-3;  // of the predicted decrease; otherwise the step is rejected
 constexpr double kGradientTolerance = 1e-12, kParameterTolerance = 1e-12;
 // Consecutive invalid steps: motion that leaves directions open needs damping, found by trial.
-constexpr int kMostInvalidSteps = 20;
+constexpr int kMaxInvalidSteps = 20;
 constexpr double kHeld = 1e30;  // times the diagonal: fixes the unknown
 
 class Solver {
@@ -79,7 +79,7 @@ void Solver::scaleColumns() {
 Eigen::VectorXd Solver::damping() const {
   const Eigen::ArrayXd scale2 = scale_.array().square();
   const Eigen::ArrayXd scaled = scale2 * equations_.matrix.diagonal().array();
-  Eigen::VectorXd added = scaled.max(kLeastDiagonal).min(kLargestDiagonal) / (radius_ * scale2);
+  Eigen::VectorXd added = scaled.max(kMinDiagonal).min(kLargestDiagonal) / (radius_ * scale2);
   holdAtBounds(added);
   return added;
 }
@@ -142,7 +142,7 @@ Solver::Outcome Solver::step(SolverIteration& iteration) {
     if (!(change >= 0.0)) numbers_.write(at_);
     return Outcome::Converged;
   }
-  if (const double quality = change / promised; quality > kLeastGain) {
+  if (const double quality = change / promised; quality > kMinGain) {
     taken(quality);
     assembleHere();
     return Outcome::Taken;
@@ -162,10 +162,10 @@ SolverSummary Solver::run(const std::function<bool(const SolverIteration&)>& cal
   while (true) {
     summary.final_cost = equations_.cost;
     if (!std::isfinite(equations_.cost)) summary.failure = "the cost is not a number";
-    if (invalid_steps > kMostInvalidSteps) summary.failure = "no damping makes the normal equations solvable";
+    if (invalid_steps > kMaxInvalidSteps) summary.failure = "no damping makes the normal equations solvable";
     if (!summary.failure.empty() || !callback(iteration)) return summary;
     if (summary.iterations >= limits_.max_iterations) return summary;
-    summary.converged = iteration.gradient_max_norm <= kGradientTolerance || radius_ <= kLeastRadius;
+    summary.converged = iteration.gradient_max_norm <= kGradientTolerance || radius_ <= kMinRadius;
     if (summary.converged) return summary;
     ++summary.iterations;
     iteration.step_norm = 0.0;

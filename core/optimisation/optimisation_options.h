@@ -26,11 +26,11 @@ struct ModelOptions {
   double unknown_delay_sigma_s;
   BiasModel bias_model;
   double bias_knot_spacing_s;
-  int most_bias_knots;
+  int max_bias_knots;
   double gyroscope_random_walk;
   double accelerometer_random_walk;
   double slow_edge_speed_px_s;
-  double least_centre_sigma_px;
+  double min_centre_sigma_px;
   double displacement_px, displacement_px2_s, displacement_px_s;
   double displacement_length_spacings, displacement_constant_share, displacement_persistence;
   double displacement_size_sigma, displacement_remainder;
@@ -56,7 +56,7 @@ struct PriorOptions {
   double camera_distortion_sigma;
   double edge_localisation_bias_sigma_px;
   double slow_edge_localisation_bias_sigma_px;
-  double longest_readout_ms;
+  double max_readout_ms;
   double time_offset_drift_sigma_ppm;
   double exposure_share_sigma;
   double mapping_sigma;
@@ -115,7 +115,7 @@ struct VerdictOptions {
   double bent_board_sigmas;
   double bent_board_mm;
   double doubtful_scale_sigmas;
-  double largest_scale_share;
+  double max_scale_share;
   double tag_corner_px;
   double tag_corner_sigmas;
   double doubtful_circle_misfit;

@@ -178,7 +178,7 @@ std::optional<double> weakSigma(const QuantityInfo& info, const OptimisationOpti
     case QuantityId::TimeOffsetDrift:
       return options.time_offset_drift_sigma_ppm;
     case QuantityId::LineDelay:
-      return 1e3 * options.longest_readout_ms / owner.image_height_px;
+      return 1e3 * options.max_readout_ms / owner.image_height_px;
     case QuantityId::ExposureShare:
       return options.exposure_share_sigma;
     case QuantityId::EdgeLocalisationBias:

@@ -40,9 +40,9 @@ bool ProblemBuilder::rolls(std::size_t camera) const {
 
 // With equal exposures of all frames, the exposure's share is part of the time offset.
 bool ProblemBuilder::exposuresVary(std::size_t camera) const {
-  constexpr double kLeast_s = 1e-4;  // half of it is a measurable time
+  constexpr double kMin_s = 1e-4;  // half of it is a measurable time
   return stage != ParameterStages::Extrinsics &&
-         exposureSpread_s(input.cameras[camera].observations) > kLeast_s;
+         exposureSpread_s(input.cameras[camera].observations) > kMin_s;
 }
 
 void ProblemBuilder::addPrior(ceres::CostFunction* cost, const std::vector<double*>& blocks) {

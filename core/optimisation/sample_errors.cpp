@@ -78,7 +78,7 @@ SampleSelection selectSamples(const SampleErrors& errors, const SampleSelection&
 
 std::vector<std::string> notesOfUnused(const CalibrationInput& input, std::size_t imu,
                                        const SampleSelection& used) {
-  constexpr std::size_t kMostTimes = 5;
+  constexpr std::size_t kMaxTimes = 5;
   const ImuData& data = input.imus[imu];
   std::vector<std::string> notes;
   const SampleSelection fit = fitSamples(data.samples);
@@ -88,14 +88,14 @@ std::vector<std::string> notesOfUnused(const CalibrationInput& input, std::size_
     std::size_t count = 0;
     for (std::size_t i = 0; i < taken.size(); ++i) {
       if (taken[i] || !could[i]) continue;
-      if (count++ < kMostTimes)
+      if (count++ < kMaxTimes)
         times += fmt::format("{}{:.3f} s", count > 1 ? ", " : "",
                              secondsSince(input.start_ns, data.samples[i].time_ns));
     }
     if (count == 0) return;
     notes.push_back(fmt::format(
         "{}: {} of {} samples of the {} contradict the motion (at {}{}) and were excluded", data.name, count,
-        std::count(could.begin(), could.end(), 1), sensor, times, count > kMostTimes ? ", ..." : ""));
+        std::count(could.begin(), could.end(), 1), sensor, times, count > kMaxTimes ? ", ..." : ""));
   };
   say("gyroscope", fit.gyroscope, used.gyroscope);
   say("accelerometer", fit.accelerometer, used.accelerometer);
@@ -155,13 +155,13 @@ std::vector<SampleRun> runsOf(const CalibrationInput& input, const CalibrationSt
 }
 
 std::vector<SampleRun> withoutStumps(const std::vector<SampleRun>& runs) {
-  constexpr double kLeastShare = 0.5;  // of the segment
+  constexpr double kMinShare = 0.5;  // of the segment
   std::vector<SampleRun> kept;
   const auto nextTo = [&](std::size_t i, std::size_t other) {
     return other < runs.size() && std::abs(runs[i].segment.position - runs[other].segment.position) <= 1;
   };
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const bool whole = runs[i].last_s - runs[i].time_s >= kLeastShare * runs[i].segment.position_spacing_s;
+    const bool whole = runs[i].last_s - runs[i].time_s >= kMinShare * runs[i].segment.position_spacing_s;
     if (whole || (i > 0 && nextTo(i, i - 1) && nextTo(i, i + 1))) kept.push_back(runs[i]);
   }
   return kept;

@@ -46,7 +46,7 @@ CircleMeasurement measurementOf(const CalibrationInput& input, const Calibration
                                 const CircleObservation& observed, const CircleScales& scales) {
   const CameraData& data = input.cameras[camera];
   const CameraIntrinsics& lens = *data.lens.detection_intrinsics;
-  const double floor_px2 = options.least_centre_sigma_px * options.least_centre_sigma_px;
+  const double floor_px2 = options.min_centre_sigma_px * options.min_centre_sigma_px;
   const Eigen::Matrix2d covariance =
       scales.circles * scales.circles * (observed.covariance_px2 + floor_px2 * Eigen::Matrix2d::Identity());
   CircleMeasurement m;

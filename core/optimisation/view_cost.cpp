@@ -243,7 +243,7 @@ class ViewEvaluation {
       motion.writeDerivatives(widths_[kCameraRotation] > 0, widths_[kCameraTranslation] > 0, by_points_);
       Rows(row, 2, rows_.poses, Eigen::OuterStride<>(rows_.stride)) = by_pose.lazyProduct(by_points_);
     }
-    const std::array<double, PoseTimes::kMost> weights = times_.weightsAt(mount_.timeOf(circle));
+    const std::array<double, PoseTimes::kMax> weights = times_.weightsAt(mount_.timeOf(circle));
     for (std::size_t k = 0; k < times_.count; ++k)
       Rows(row + 6 * k, 2, 6, Eigen::OuterStride<>(rows_.stride)) = weights[k] * by_pose;
     RowPair own(row + rows_.poses, rows_.stride);

@@ -12,7 +12,7 @@
 namespace evical {
 namespace {
 
-constexpr double kLeastMotion_sigma = 3.0;  // RMS about the mean, in sigmas of one sample
+constexpr double kMinMotion_sigma = 3.0;  // RMS about the mean, in sigmas of one sample
 
 class Spread {
  public:
@@ -24,7 +24,7 @@ class Spread {
   std::vector<Eigen::Vector3d> axesWithout(double noise_sigma) const {
     const Eigen::Matrix3d covariance = sum_ / count_;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(0.5 * (covariance + covariance.transpose()));
-    const double least = (1.0 + kLeastMotion_sigma * kLeastMotion_sigma) * noise_sigma * noise_sigma;
+    const double least = (1.0 + kMinMotion_sigma * kMinMotion_sigma) * noise_sigma * noise_sigma;
     std::vector<Eigen::Vector3d> axes;
     for (Eigen::Index i = 0; i < 3; ++i) {
       if (solver.eigenvalues()[i] < least) axes.emplace_back(solver.eigenvectors().col(i));

@@ -126,14 +126,14 @@ class SheetRaster {
 
 std::string boardPng(const Board& board, double resolution_dpi, const SheetOptions& options,
                      const TagPrint& print) {
-  constexpr double kLeast_dpi = 10.0, kMost_dpi = 4800.0, kMostPixels = 2e9;
-  if (!(resolution_dpi >= kLeast_dpi && resolution_dpi <= kMost_dpi))
-    throw badInput("dpi", fmt::format("must be in {}..{}", kLeast_dpi, kMost_dpi),
+  constexpr double kMin_dpi = 10.0, kMax_dpi = 4800.0, kMaxPixels = 2e9;
+  if (!(resolution_dpi >= kMin_dpi && resolution_dpi <= kMax_dpi))
+    throw badInput("dpi", fmt::format("must be in {}..{}", kMin_dpi, kMax_dpi),
                    "Use 300 or 600, as printers do");
   const BoardSheet sheet = layOut(board, options, print);
   SheetRaster raster(sheet, resolution_dpi);
   const double pixels = static_cast<double>(raster.width_px()) * raster.height_px();
-  if (pixels > kMostPixels)
+  if (pixels > kMaxPixels)
     throw badInput("dpi",
                    fmt::format("gives an image of {} x {} pixels, which is too large", raster.width_px(),
                                raster.height_px()),

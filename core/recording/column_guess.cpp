@@ -9,7 +9,7 @@
 namespace evical {
 namespace {
 
-constexpr double kFewestEventsPerS = 50.0, kMostEventsPerS = 5e7;  // of a plausible file of events
+constexpr double kFewestEventsPerS = 50.0, kMaxEventsPerS = 5e7;  // of a plausible file of events
 constexpr std::size_t kEnoughRows = 100;
 
 }  // namespace
@@ -63,7 +63,7 @@ std::int64_t guessTimeUnit_ns(const ColumnNumbers& time, std::size_t rows) {
 
 bool areOwnTimes_ns(const ColumnNumbers& time, std::size_t rows) {
   const double span_s = 1e-9 * (time.last - time.first);
-  return time.whole && static_cast<double>(rows) <= kMostEventsPerS * span_s;
+  return time.whole && static_cast<double>(rows) <= kMaxEventsPerS * span_s;
 }
 
 const char* timeUnitName(std::int64_t unit_ns) {

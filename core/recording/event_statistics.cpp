@@ -18,7 +18,7 @@ namespace {
 
 constexpr Resolution kLargestGuess_px = {2048,
                                          2048};  // if the file does not state it; no event sensor has more
-constexpr std::size_t kMostNamedPixels = 8;
+constexpr std::size_t kMaxNamedPixels = 8;
 constexpr std::int64_t kLongStep_ns = 3600 * kSecond_ns;
 constexpr std::uint64_t kFewStrays = kEventStamps.enough;
 
@@ -29,14 +29,14 @@ EventStatistics::EventStatistics(const StreamInfo& info, const InspectionOptions
   numbers_.info = info;
   counted_px_ = info.resolution_px.known() ? info.resolution_px : kLargestGuess_px;
   counted_px_.width_px = std::min(counted_px_.width_px, 2 * kLargestGuess_px.width_px);
-  most_rows_ = std::min(counted_px_.height_px, 2 * kLargestGuess_px.height_px);
+  max_rows_ = std::min(counted_px_.height_px, 2 * kLargestGuess_px.height_px);
   counted_px_.height_px = 0;
 }
 
 // Number of counted rows, with this one if the sensor may have it: memory grows with the events' coordinates,
 // not with the size that a file claims.
 unsigned EventStatistics::rowsWith(unsigned y_px) {
-  if (y_px < static_cast<unsigned>(most_rows_)) {
+  if (y_px < static_cast<unsigned>(max_rows_)) {
     counted_px_.height_px = std::max(counted_px_.height_px, static_cast<int>(y_px) + 1);
     pixels_.resize(static_cast<std::size_t>(counted_px_.pixelCount()));
   }
@@ -133,10 +133,10 @@ void EventStatistics::finish(StreamSummary& summary, std::vector<RecordingFault>
 
 // A quantile of the intervals that occur within edges: hot pixels and equal stamps are below it.
 double EventStatistics::shortestInterval_s() const {
-  constexpr std::uint64_t kLeastIntervals = 10'000, kOneIn = 100;
+  constexpr std::uint64_t kMinIntervals = 10'000, kOneIn = 100;
   std::uint64_t all = 0, below = 0;
   for (const std::uint32_t count : intervals_) all += count;
-  if (all < kLeastIntervals) return 0.0;
+  if (all < kMinIntervals) return 0.0;
   std::size_t interval = 0;
   while (kOneIn * (below += intervals_[interval]) < all) ++interval;
   return 1e-6 * kInterval_us * static_cast<double>(interval);
@@ -145,7 +145,7 @@ double EventStatistics::shortestInterval_s() const {
 std::uint32_t EventStatistics::neighbourMedian(int x_px, int y_px) const {
   std::array<std::uint32_t, 8> counts{};
   std::size_t found = 0;
-  for (int y = std::max(0, y_px - 1); y <= std::min(most_rows_ - 1, y_px + 1); ++y) {
+  for (int y = std::max(0, y_px - 1); y <= std::min(max_rows_ - 1, y_px + 1); ++y) {
     for (int x = std::max(0, x_px - 1); x <= std::min(counted_px_.width_px - 1, x_px + 1); ++x) {
       if (x == x_px && y == y_px) continue;
       const bool counted = y < counted_px_.height_px;
@@ -175,7 +175,7 @@ void EventStatistics::findHotPixels(double duration_s, StreamSummary& summary,
   }
   if (hot.empty()) return;
   const std::size_t total = hot.size();
-  hot.resize(std::min(total, kMostNamedPixels));
+  hot.resize(std::min(total, kMaxNamedPixels));
   std::string text = fmt::format("{} hot pixels give {:.1f} % of the events: {}{}.", total, 100.0 * share,
                                  joined(hot), total > hot.size() ? ", ..." : "");
   if (share < options_.hot_pixel_share)

@@ -37,7 +37,7 @@ class EventStatistics {
   std::vector<Pixel> pixels_;             // row by row
   std::vector<std::uint32_t> intervals_;  // of one pixel, by their length in kInterval_us
   Resolution counted_px_;                 // of pixels_: as many rows as events reached
-  int most_rows_ = 0;
+  int max_rows_ = 0;
   std::uint64_t outside_ = 0;
   StampStep stamp_step_;
   struct {

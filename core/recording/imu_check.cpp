@@ -18,9 +18,9 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kMostFirstSamples = 10;  // stamped before the driver's clock is set
+constexpr std::size_t kMaxFirstSamples = 10;  // stamped before the driver's clock is set
 constexpr double kUnset_s = 3600.0;
-constexpr double kLeastRaw_m_s2 = 200.0;  // norms from here on are raw counts
+constexpr double kMinRaw_m_s2 = 200.0;    // norms from here on are raw counts
 constexpr std::size_t kFewestEqual = 10;  // samples whose times are not equal by chance
 
 using Faults = std::vector<RecordingFault>;
@@ -68,7 +68,7 @@ void checkTimes(const std::string& name, const Samples& samples, const Inspectio
     const double at_s = secondsSince(samples.front().time_ns, samples[i - 1].time_ns);
     const double interval_s = secondsSince(samples[i - 1].time_ns, samples[i].time_ns);
     const bool late = interval_s > options.imu_gap_periods * period_s && period_s > 0.0;
-    if (i <= kMostFirstSamples && interval_s > kUnset_s && late) {
+    if (i <= kMaxFirstSamples && interval_s > kUnset_s && late) {
       faults.push_back(
           {name, FaultKind::Corrupt, 0.0,
            fmt::format(
@@ -154,25 +154,25 @@ void checkSaturated(const std::string& name, const Samples& samples, const ImuAx
 
 void checkSpikes(const std::string& name, const Samples& samples, const char* sensor, Measures measures,
                  const std::vector<std::size_t>& spikes, Faults& faults) {
-  constexpr std::size_t kMostTimes = 5;
+  constexpr std::size_t kMaxTimes = 5;
   if (spikes.empty()) return;
   const auto count = std::count_if(samples.begin(), samples.end(), measures);
   std::string times;
-  for (std::size_t k = 0; k < std::min(spikes.size(), kMostTimes); ++k)
+  for (std::size_t k = 0; k < std::min(spikes.size(), kMaxTimes); ++k)
     times += fmt::format("{}{:.3f} s", k > 0 ? ", " : "",
                          secondsSince(samples.front().time_ns, samples[spikes[k]].time_ns));
   faults.push_back(
       {name, FaultKind::Corrupt, secondsSince(samples.front().time_ns, samples[spikes.front()].time_ns),
        fmt::format(
            "{} of {} samples of the {} contradict their neighbours (at {}{}): calibrations leave them out.",
-           spikes.size(), count, sensor, times, spikes.size() > kMostTimes ? ", ..." : "")});
+           spikes.size(), count, sensor, times, spikes.size() > kMaxTimes ? ", ..." : "")});
 }
 
 void checkUnits(const std::string& name, const Samples& samples, const InspectionOptions& options,
                 Faults& faults) {
   const Samples forces = ownSamples(samples, measuresForce<ImuSample>);
   const double norm = medianForceNorm(forces);
-  const bool raw = !forces.empty() && norm >= kLeastRaw_m_s2;
+  const bool raw = !forces.empty() && norm >= kMinRaw_m_s2;
   // Fast motion increases the norms, but not the norm of their mean in a frame that does not rotate.
   if (!forces.empty() && !isGravity(norm, options) &&
       !isGravity(steadyForceNorm(samples).value_or(norm), options)) {

@@ -14,10 +14,10 @@ namespace {
 struct Rates {
   StreamType type;
   const char *items, *source;
-  double least_hz, most_hz;              // that exist; of events: per pixel
-  double usual_least_hz, usual_most_hz;  // that a corrected unit should give
-  std::uint64_t fewest;                  // items; fewer show no rate
-  double shortest_s, longest_s;          // recordings
+  double min_hz, max_hz;              // that exist; of events: per pixel
+  double usual_min_hz, usual_max_hz;  // that a corrected unit should give
+  std::uint64_t fewest;               // items; fewer show no rate
+  double shortest_s, longest_s;       // recordings
 };
 constexpr double kSmallestSensor = 128.0 * 128.0;  // pixels; events may reach only some
 constexpr double kMinute_s = 60.0, kDay_s = 24.0 * 60.0 * kMinute_s;
@@ -44,7 +44,7 @@ constexpr std::array<Factor, 3> kFactors{{
 std::string explanation(double rate_hz, bool too_high, const Rates& rates) {
   for (const Factor& each : kFactors) {
     const double true_hz = too_high ? rate_hz / each.factor : rate_hz * each.factor;
-    if (true_hz < rates.usual_least_hz || true_hz > rates.usual_most_hz) continue;
+    if (true_hz < rates.usual_min_hz || true_hz > rates.usual_max_hz) continue;
     const bool of_pictures = rates.type == StreamType::Frames || rates.type == StreamType::Points;
     return fmt::format("The times seem to be {:g} times too {} ({}){}: correct their unit.", each.factor,
                        too_high ? "small" : "large", too_high ? each.too_small : each.too_large,
@@ -65,8 +65,8 @@ Judged judge(const SeenTimes& seen, const Rates& rates) {
   if (rates.type == StreamType::Events) out.share = std::max(seen.pixels(), kSmallestSensor);
   const double mean_hz = 1.0 / seen.mean_s() / out.share;
   const double median_hz = seen.median_s() > 0.0 ? 1.0 / seen.median_s() / out.share : mean_hz;
-  out.too_high = mean_hz > rates.most_hz;
-  out.too_low = std::max(mean_hz, median_hz) < rates.least_hz;
+  out.too_high = mean_hz > rates.max_hz;
+  out.too_low = std::max(mean_hz, median_hz) < rates.min_hz;
   out.hz = out.too_low ? median_hz : mean_hz;
   return out;
 }
@@ -79,11 +79,11 @@ std::string lengthText(double length_s) {
 }  // namespace
 
 void SeenTimes::add(std::int64_t time_ns, std::uint64_t items) {
-  constexpr std::size_t kMost = 4096;
+  constexpr std::size_t kMax = 4096;
   if (count_ > 0) {
     const double interval_s = std::max(0.0, secondsSince(last_ns_, time_ns));
     span_s_ += interval_s;
-    if (intervals_s_.size() < kMost) intervals_s_.push_back(interval_s / static_cast<double>(items));
+    if (intervals_s_.size() < kMax) intervals_s_.push_back(interval_s / static_cast<double>(items));
   }
   count_ += items;
   last_ns_ = time_ns;

@@ -33,7 +33,7 @@ class ReadOutLoad {
   };
   Limit limit() const {
     constexpr std::size_t kFewest = 100;
-    constexpr double kLeastRate_hz = 1e6, kNear = 0.02, kLeastShare = 0.15;
+    constexpr double kMinRate_hz = 1e6, kNear = 0.02, kMinShare = 0.15;
     if (counts_.size() < kFewest) return {};
     std::vector<std::uint32_t> sorted = counts_;
     const auto top = sorted.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size()));
@@ -43,7 +43,7 @@ class ReadOutLoad {
                                     [&](std::uint32_t count) { return count >= (1.0 - kNear) * most; });
     const Limit found{most * 1e9 / static_cast<double>(kBin_ns),
                       static_cast<double>(near) / static_cast<double>(counts_.size())};
-    return found.rate_hz >= kLeastRate_hz && found.share >= kLeastShare ? found : Limit{};
+    return found.rate_hz >= kMinRate_hz && found.share >= kMinShare ? found : Limit{};
   }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 // Most samples that wait for the other sensor. If there are more, its stream is elsewhere in the file or has
 // ended.
-constexpr std::size_t kMostWaiting = std::size_t{1} << 20;
+constexpr std::size_t kMaxWaiting = std::size_t{1} << 20;
 constexpr std::size_t kPacket_samples = 256;
 
 // Samples of one sensor: those that wait, and the last one that was returned.
@@ -68,7 +68,7 @@ class JoinedHalves {
   bool isCertain() const {
     const std::size_t rates = rates_.waiting.size(), forces = forces_.waiting.size();
     if (rates > 0 && forces > 0) return true;
-    return rates + forces > (finished_ ? 0 : kMostWaiting);
+    return rates + forces > (finished_ ? 0 : kMaxWaiting);
   }
 
   RawImuSample next() {

@@ -43,7 +43,7 @@ class StampFilter {
   std::int64_t strayFrom_ns() const { return stray_from_ns_; }
 
  private:
-  static constexpr std::size_t kMostWaiting = 100'000;
+  static constexpr std::size_t kMaxWaiting = 100'000;
   static constexpr std::int64_t kEnough_ns = 50'000'000;  // packets with a wrong stamp are shorter
 
   bool near(const Item& item, std::int64_t time_ns) const {
@@ -98,7 +98,7 @@ void StampFilter<Item>::take(const Item& item, std::vector<Item>& kept) {
     return;
   }
   held_.push_back(item);
-  proven_ = latest_ns_ - held_.front().time_ns >= kEnough_ns || held_.size() >= kMostWaiting;
+  proven_ = latest_ns_ - held_.front().time_ns >= kEnough_ns || held_.size() >= kMaxWaiting;
   if (!proven_) return;
   kept.insert(kept.end(), held_.begin(), held_.end());
   held_.clear();
@@ -111,7 +111,7 @@ void StampFilter<Item>::wait(const Item& item, std::vector<Item>& kept) {
   const std::int64_t length_ns = waiting_.back().time_ns - waiting_.front().time_ns;
   const bool borne_out =
       waiting_.size() >= tolerance_.enough &&
-      (!started_ || length_ns >= kEnough_ns || length_ns <= -kEnough_ns || waiting_.size() >= kMostWaiting);
+      (!started_ || length_ns >= kEnough_ns || length_ns <= -kEnough_ns || waiting_.size() >= kMaxWaiting);
   if (!borne_out) return;
   drop(held_, waiting_.front().time_ns);
   started_ = true;
@@ -138,9 +138,9 @@ class StampStep {
  public:
   // Call in order of time. Only the first events are checked.
   void add(EventSpan events) {
-    constexpr std::uint64_t kMost = 500'000;
+    constexpr std::uint64_t kMax = 500'000;
     for (const Event& event : events) {
-      if (seen_ >= kMost || step_ns_ <= kFine_ns) return;
+      if (seen_ >= kMax || step_ns_ <= kFine_ns) return;
       const std::int64_t step_ns = event.time_ns - last_ns_;
       if (seen_++ > 0 && step_ns > 0) {
         ++steps_;

@@ -29,7 +29,7 @@ class UnpackingLimit {
   // Counts what was unpacked since the beginning. Throws CalibrationError (BadInput) if it is too much for the whole file.
   void add(std::uint64_t bytes) {
     unpacked_bytes_ += bytes;
-    if (unpacked_bytes_ <= most_bytes_) return;
+    if (unpacked_bytes_ <= max_bytes_) return;
     throw badInput(file_,
                    "unpacks to more than " + std::to_string(unpacked_bytes_ >> 20) +
                        " MB, although it has only " + std::to_string((file_bytes_ >> 10) + 1) +
@@ -42,10 +42,10 @@ class UnpackingLimit {
   UnpackingLimit(std::string file, std::uint64_t file_bytes, std::uint64_t always_bytes, std::uint64_t times)
       : file_(std::move(file)),
         file_bytes_(file_bytes),
-        most_bytes_(std::max(always_bytes, times * file_bytes)) {}
+        max_bytes_(std::max(always_bytes, times * file_bytes)) {}
 
   std::string file_;
-  std::uint64_t file_bytes_, most_bytes_, unpacked_bytes_ = 0;
+  std::uint64_t file_bytes_, max_bytes_, unpacked_bytes_ = 0;
 };
 
 }  // namespace evical

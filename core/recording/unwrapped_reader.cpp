@@ -24,11 +24,11 @@ constexpr std::int64_t kDisorder_ns = 10 * kMillisecond_ns;
 // Longest time from the last item before a wrap to the first one after it. A counter that starts anywhere, or has an offset,
 // is recognised by its step only, which must then be more exact, and not short.
 std::int64_t longest_ns(std::int64_t range_ns, std::int64_t last_ns, std::int64_t time_ns) {
-  constexpr std::int64_t kShare = 100, kLeast_ns = kSecond_ns / 4, kMost_ns = 60 * kSecond_ns;
+  constexpr std::int64_t kShare = 100, kMin_ns = kSecond_ns / 4, kMax_ns = 60 * kSecond_ns;
   constexpr std::int64_t kExact_ns = kSecond_ns / 10, kLongRange_ns = 1000 * kSecond_ns;
   const bool without_sign = last_ns < range_ns && time_ns >= 0;
   const bool with_sign = last_ns < range_ns / 2 && time_ns >= -range_ns / 2;
-  if (without_sign || with_sign) return std::clamp(range_ns / kShare, kLeast_ns, kMost_ns);
+  if (without_sign || with_sign) return std::clamp(range_ns / kShare, kMin_ns, kMax_ns);
   return range_ns > kLongRange_ns ? kExact_ns : -1;
 }
 

@@ -31,9 +31,9 @@ bool FlashingBoard::isShown(double time_s) const {
 
 namespace {
 
-constexpr int kMostSteps = 256;  // per interval
+constexpr int kMaxSteps = 256;  // per interval
 constexpr char kMoving = -1;
-constexpr double kLeastFactor = 0.3;    // of a threshold, relative to its mean
+constexpr double kMinFactor = 0.3;      // of a threshold, relative to its mean
 constexpr double kSettlingTimes = 3.0;  // time constants after which the low-pass filter follows a ramp
 
 }  // namespace
@@ -56,13 +56,11 @@ PixelArray::PixelArray(const Scenario& scenario, std::size_t camera)
   // Log intensity is assumed linear within a step, which must be short compared with the blur.
   constexpr float kLongest_px = 0.3f, kShareOfBlur = 0.5f;
   step_travel_px_ = std::min(kLongest_px, kShareOfBlur * static_cast<float>(model_.blur_px));
-  least_threshold_ =
-      static_cast<float>(std::max(1.0 - Random::kLargestNormal * model_.threshold_noise, kLeastFactor));
+  min_threshold_ =
+      static_cast<float>(std::max(1.0 - Random::kLargestNormal * model_.threshold_noise, kMinFactor));
   constexpr std::uint64_t kThresholdStream = 0xe0u;
   Random random(scenario.seed, kThresholdStream + camera);
-  const auto factor = [&] {
-    return std::max(1.0 + model_.threshold_mismatch * random.normal(), kLeastFactor);
-  };
+  const auto factor = [&] { return std::max(1.0 + model_.threshold_mismatch * random.normal(), kMinFactor); };
   findOwnLight();
   if (scenario.room.exists()) room_ = std::make_unique<RoomRenderer>(scenario, camera);
   for (Pixel& pixel : pixels_) {
@@ -151,11 +149,11 @@ float PixelArray::thresholdNow(const Pixel& pixel, bool on, int x, int y) const 
   constexpr std::uint64_t kStream = 0x150u;
   const auto place = static_cast<std::uint64_t>(y * width_px_ + x);
   Random random(scenario_.seed, kStream + 2 * camera_ + (on ? 1 : 0), (place << 32) + pixel.event_count);
-  return mean * static_cast<float>(std::max(1.0 + model_.threshold_noise * random.normal(), kLeastFactor));
+  return mean * static_cast<float>(std::max(1.0 + model_.threshold_noise * random.normal(), kMinFactor));
 }
 
 // Number of steps for which the lamp's light is nearly linear within one.
-int PixelArray::leastSteps(double length_s) const {
+int PixelArray::minSteps(double length_s) const {
   constexpr double kStepsPerPeriod = 8.0;
   int steps = 2;
   if (scenario_.scene.lamp_flicker > 0.0)
@@ -184,8 +182,8 @@ void PixelArray::begin(double begin_s, double end_s,
           std::max({travel_px, view.travel_px, renderer_.visitorsTravel_px(tile, {&first, &middle, &last})});
     }
   }
-  int steps = leastSteps(end_s - begin_s);
-  while (steps < kMostSteps && static_cast<float>(steps) * step_travel_px_ < travel_px) steps *= 2;
+  int steps = minSteps(end_s - begin_s);
+  while (steps < kMaxSteps && static_cast<float>(steps) * step_travel_px_ < travel_px) steps *= 2;
   instants_.clear();
   for (int k = 0; k <= steps; ++k) instants_.push_back(instantAt(begin_s + (end_s - begin_s) * k / steps));
 }
@@ -224,7 +222,7 @@ void PixelArray::runTileRow(int tile_row, Scratch& scratch, std::vector<Event>& 
     renderer_.look(tile, ends, scratch.view);
     const bool constant = scratch.view.constant;
     if (constant && settled == static_cast<char>(scratch.view.content)) continue;
-    int steps = leastSteps(end_s_ - begin_s_);
+    int steps = minSteps(end_s_ - begin_s_);
     while (steps < all && static_cast<float>(steps) * step_travel_px_ < scratch.view.travel_px) steps *= 2;
     if (constant && lamp_is_weak_) steps = 1;
     scratch.input.resize(static_cast<std::size_t>(tile.pixelCount()));
@@ -262,8 +260,8 @@ void PixelArray::advance(const Step& step, float input, int x, int y, Pixel& pix
   pixel.reference -= step.leak * pixel.threshold_on;
   // Most steps do not reach the least threshold that can be drawn, and need no draw.
   const bool in_reset = model_.reset_s > 0.0 && pixel.last_event_s >= 0.0;
-  if (!in_reset && after < pixel.reference + least_threshold_ * pixel.threshold_on &&
-      after > pixel.reference - least_threshold_ * pixel.threshold_off)
+  if (!in_reset && after < pixel.reference + min_threshold_ * pixel.threshold_on &&
+      after > pixel.reference - min_threshold_ * pixel.threshold_off)
     return;
   if (!in_reset && after < pixel.reference + thresholdNow(pixel, true, x, y) &&
       after > pixel.reference - thresholdNow(pixel, false, x, y))

@@ -104,7 +104,7 @@ class PixelArray {
   void emitCrossings(const Step& step, double before, double after, int x, int y, Pixel& pixel,
                      std::vector<Event>& events) const;
   void findOwnLight();
-  int leastSteps(double length_s) const;
+  int minSteps(double length_s) const;
   Step stepBetween(double begin_s, double end_s) const;
   Response responseWith(double constant_s, double length_s) const;
   Response responseOf(const Step& step, float input, int x, int y, const Pixel& pixel) const;
@@ -119,7 +119,7 @@ class PixelArray {
   std::unique_ptr<RoomRenderer> room_;       // replaces the renderer if there is a room
   int width_px_;
   float step_travel_px_;
-  float least_threshold_;  // relative to the mean, that thresholdNow can return
+  float min_threshold_;  // relative to the mean, that thresholdNow can return
   // True if pixels may be skipped when nothing moves; true if the lamp alone causes events.
   bool rests_, lamp_is_weak_;
   std::vector<float> own_light_;  // log, added to a pixel's light; empty if all pixels have the same response

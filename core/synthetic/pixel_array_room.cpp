@@ -7,7 +7,7 @@
 namespace evical {
 namespace {
 
-constexpr int kMostRoomSteps = 256;  // per interval
+constexpr int kMaxRoomSteps = 256;  // per interval
 
 }  // namespace
 
@@ -41,8 +41,8 @@ void PixelArray::beginInRoom(const std::function<RigidTransform(double)>& world_
       room_->look(renderer_.tile(column, row), {&first, &middle, &last}, view);
       travel_px = std::max(travel_px, view.travel_px);
     }
-  int steps = leastSteps(end_s_ - begin_s_);
-  while (steps < kMostRoomSteps && static_cast<float>(steps) * step_travel_px_ < travel_px) steps *= 2;
+  int steps = minSteps(end_s_ - begin_s_);
+  while (steps < kMaxRoomSteps && static_cast<float>(steps) * step_travel_px_ < travel_px) steps *= 2;
   room_instants_.clear();
   for (int k = 0; k <= steps; ++k) room_instants_.push_back(instantAt(static_cast<double>(k) / steps));
 }
@@ -55,7 +55,7 @@ void PixelArray::runRoomRow(int tile_row, Scratch& scratch, std::vector<Event>& 
   for (int column = 0; column < renderer_.tileColumns(); ++column) {
     const SceneRenderer::Tile tile = renderer_.tile(column, tile_row);
     room_->look(tile, ends, scratch.room_view);
-    int steps = leastSteps(length_s);
+    int steps = minSteps(length_s);
     while (steps < all && static_cast<float>(steps) * step_travel_px_ < scratch.room_view.travel_px)
       steps *= 2;
     scratch.input.resize(static_cast<std::size_t>(tile.pixelCount()));

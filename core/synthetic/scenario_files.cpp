@@ -15,7 +15,7 @@ namespace evical {
 namespace {
 
 constexpr int kSensorIndent = 6;
-constexpr double kLeastDensity = 1e-7;  // a session needs a positive noise density, even for a noiseless IMU
+constexpr double kMinDensity = 1e-7;  // a session needs a positive noise density, even for a noiseless IMU
 
 std::string vectorText(const Eigen::VectorXd& v) {
   std::string text = "[";
@@ -167,8 +167,8 @@ std::string sessionYaml(const Scenario& truth, const std::string& recording_file
         "{:.6g}\n"
         "    acceleration_unit: m/s^2\n    angular_rate_unit: rad/s\n",
         yamlText(imu.name), imu_file.empty() ? "" : fmt::format("    recording: {}\n", yamlText(imu_file)),
-        yamlText(imu.stream), std::max(imu.accelerometer_density, kLeastDensity),
-        std::max(imu.gyroscope_density, kLeastDensity));
+        yamlText(imu.stream), std::max(imu.accelerometer_density, kMinDensity),
+        std::max(imu.gyroscope_density, kMinDensity));
     if (imu.accelerometer_walk > 0.0)
       text += fmt::format("    accelerometer_random_walk: {:.6g}\n", imu.accelerometer_walk);
     if (imu.gyroscope_walk > 0.0)

@@ -65,9 +65,9 @@ void readPeople(const YamlNode& map, PeopleModel& people) {
   get(map, "every_s", people.every_s, 0.0, 1000.0, "s");
   get(map, "speed_m_s", people.speed_m_s, 0.1, 10.0, "m/s");
   get(map, "distance_m", people.distance_m, 0.0, 100.0, "m");
-  constexpr double kLeast_s = 0.2;
-  if (people.every_s > 0.0 && people.every_s < kLeast_s)
-    throw map["every_s"].error("is too short an interval", fmt::format("Give 0, or {} s or more", kLeast_s));
+  constexpr double kMin_s = 0.2;
+  if (people.every_s > 0.0 && people.every_s < kMin_s)
+    throw map["every_s"].error("is too short an interval", fmt::format("Give 0, or {} s or more", kMin_s));
 }
 
 void readScene(const YamlNode& map, SceneModel& scene) {

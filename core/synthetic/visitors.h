@@ -30,13 +30,13 @@ struct Limb {
 };
 
 struct Figure {
-  static constexpr int kMostLimbs = 8;
+  static constexpr int kMaxLimbs = 8;
 
   int visit = 0;                // distinguishes figures of two instants
   float behind_board_m = 0.0f;  // its plane; negative: in front of the board
   Eigen::Vector2f place_m = Eigen::Vector2f::Zero();
   Eigen::Matrix2f own_from_plane = Eigen::Matrix2f::Identity();
-  std::array<Limb, kMostLimbs> limbs;
+  std::array<Limb, kMaxLimbs> limbs;
   int limb_count = 0;
   Eigen::Vector2f low_m, high_m;                        // box about all limbs, in its own coordinates
   float log_tone = 0.0f, contrast = 1.0f;               // of the texture

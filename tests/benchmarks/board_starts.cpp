@@ -184,8 +184,8 @@ int run(int argc, char** argv) {
           start.at_s = first_s + random.uniform() * std::max(0.0, scenario.duration_s - start.length_s);
           counts += run(scenario, motion, events, start);
         }
-        constexpr double kMostWrong = 0.02;
-        good = good && counts.share() <= kMostWrong;
+        constexpr double kMaxWrong = 0.02;
+        good = good && counts.share() <= kMaxWrong;
         fmt::print("| {} | {} | {} | {} | {} | {} | {:.1f} | {} | {:.2f} |\n", scenario.name, scenario.seed,
                    wordOf(hidden), counts.starts, counts.lost, counts.windows, 100.0 * counts.share(),
                    counts.wrong_at_the_end, counts.longest_s);

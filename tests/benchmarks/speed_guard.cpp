@@ -223,11 +223,11 @@ class Stages {
 struct Stage {
   const char* name;
   void (Stages::*work)();
-  double least_s = std::numeric_limits<double>::infinity();
+  double min_s = std::numeric_limits<double>::infinity();
   double baseline = 0.0, may_grow = kMayGrow;
   std::optional<double> allowed = {};  // for this stage, instead of the default
 
-  double ratio(double reference_s) const { return least_s / reference_s; }
+  double ratio(double reference_s) const { return min_s / reference_s; }
   double mayGrow() const { return allowed.value_or(may_grow); }
   bool grown(double reference_s) const {
     return baseline > 0.0 && ratio(reference_s) > (1.0 + mayGrow()) * baseline;
@@ -264,7 +264,7 @@ class Guard {
     ++rounds_;
     for (std::size_t k = 0; k < kReferences; ++k) measure(&Stages::reference, reference_s_);
     for (Stage& stage : stages_)
-      for (std::size_t k = 0; k < kRepeats; ++k) measure(stage.work, stage.least_s);
+      for (std::size_t k = 0; k < kRepeats; ++k) measure(stage.work, stage.min_s);
   }
 
   bool anyGrown() const {
@@ -279,7 +279,7 @@ class Guard {
     text += "| stage | ms | ratio | baseline | change |\n|---|---|---|---|---|\n";
     for (const Stage& stage : stages_)
       text +=
-          fmt::format("| {} | {:.1f} | {:.2f} | {:.2f} | {:+.0f} %{} |\n", stage.name, 1e3 * stage.least_s,
+          fmt::format("| {} | {:.1f} | {:.2f} | {:.2f} | {:+.0f} %{} |\n", stage.name, 1e3 * stage.min_s,
                       stage.ratio(reference_s_), stage.baseline,
                       stage.baseline > 0.0 ? 100.0 * (stage.ratio(reference_s_) / stage.baseline - 1.0) : 0.0,
                       stage.grown(reference_s_)
@@ -307,11 +307,11 @@ class Guard {
   }
 
  private:
-  void measure(void (Stages::*work)(), double& least_s) {
+  void measure(void (Stages::*work)(), double& min_s) {
     const auto now_s = [] { return test::processCpu_s() + test::childrenCpu_s(); };
     const double begin_s = now_s();
     (stages_of_.*work)();
-    least_s = std::min(least_s, now_s() - begin_s);
+    min_s = std::min(min_s, now_s() - begin_s);
   }
 
   Stages stages_of_;
@@ -337,21 +337,21 @@ class Guard {
 int run(int argc, char** argv) {
   CommandLine app("Guards against stages that become slower");
   std::string baseline, table, scenario = test::scenarioPath("davis346");
-  int rounds = 3, most_rounds = 9;
+  int rounds = 3, max_rounds = 9;
   bool renew = false;
   app.option("BASELINE", baseline, "File of ratios").required();
   app.flag("--renew", renew, "Write the ratios of this run as the new baseline");
   app.option("--table", table, "File for the printed table");
   app.option("--scenario", scenario, "Scenario to simulate");
   app.option("--rounds", rounds, "Minimum number of rounds").between(1, 100);
-  app.option("--most-rounds", most_rounds,
+  app.option("--most-rounds", max_rounds,
              "Maximum number of rounds if a stage seems slower, since other programs may disturb it")
       .between(1, 100);
   if (!app.parse(argc, argv)) return 0;
   Guard guard(scenario);
   if (std::filesystem::exists(baseline) || !renew) guard.readBaseline(baseline, renew);
-  for (int k = 0; k < (renew ? most_rounds : rounds); ++k) guard.round();
-  for (int k = rounds; k < most_rounds && !renew && guard.anyGrown(); ++k) guard.round();
+  for (int k = 0; k < (renew ? max_rounds : rounds); ++k) guard.round();
+  for (int k = rounds; k < max_rounds && !renew && guard.anyGrown(); ++k) guard.round();
   fmt::print("{}", guard.table());
   if (!table.empty()) writeFileWhole(table, guard.table());
   if (renew) {

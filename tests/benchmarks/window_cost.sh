@@ -6,7 +6,7 @@
 set -euo pipefail
 . "$(dirname "$0")/../support/xvfb.sh"
 programs=$1 session=$(realpath "$2")
-most_mb=300 most_ratio=1.3
+max_mb=300 max_ratio=1.3
 scratch=$(mktemp -d)
 finish() {
   kill "${program_pid:-}" 2>/dev/null || true
@@ -53,4 +53,4 @@ echo "|---|---|---|"
 echo "| evical calibrate | $line_s | $line_mb |"
 echo "| evical-gui, started and opened | $before_s | $before_mb |"
 echo "| evical-gui, with the run, Detection in view | $window_s (the run $ratio times) | $window_mb |"
-awk -v mb="$window_mb" -v ratio="$ratio" -v m="$most_mb" -v r="$most_ratio" 'BEGIN {exit !(mb <= m && ratio <= r)}'
+awk -v mb="$window_mb" -v ratio="$ratio" -v m="$max_mb" -v r="$max_ratio" 'BEGIN {exit !(mb <= m && ratio <= r)}'

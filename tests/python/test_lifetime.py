@@ -31,7 +31,7 @@ def test_sensors_stay_valid_when_a_value_is_set(session):
         assert imu.name == "left_imu"
     camera, imu, board = session.cameras["left"], session.imus["left_imu"], session.board
     for k in range(50):
-        session.set("grid.least_circles", 7 + k % 3)
+        session.set("grid.min_circles", 7 + k % 3)
         imu.gyroscope_noise_density = 1e-4 * (k + 1)
         camera.stream = f"/a/longer/name/than/a/short/string/{k}"
         board.rows = 3 + k
@@ -40,7 +40,7 @@ def test_sensors_stay_valid_when_a_value_is_set(session):
         assert session.cameras["left"].stream == camera.stream == f"/a/longer/name/than/a/short/string/{k}"
         assert session.board.rows == board.rows == 3 + k
     with pytest.raises(evical.InputError):
-        session.set("grid.least_circles", -1)
+        session.set("grid.min_circles", -1)
     del session
     gc.collect()
     assert camera.name == "left" and imu.name == "left_imu" and board.rows == 52
@@ -64,7 +64,7 @@ def test_threads_change_and_use_one_session(session):
     def use(number):
         try:
             for k in range(100):
-                session.set("grid.least_circles", 7 + (number + k) % 5)
+                session.set("grid.min_circles", 7 + (number + k) % 5)
                 session.imus["left_imu"].stream = f"/a/stream/with/a/long/name/{number}/{k}"
                 session.copy().to_yaml()
                 assert session.cameras["left"].name == "left"

@@ -17,14 +17,14 @@ def test_a_session_saved_is_the_session_loaded(session, tmp_path):
     session.imus["left_imu"].gyroscope_noise_density = 2e-3
     session.cameras["left"].resolution_px = [346, 260]
     session.time_range_s = (0.5, 5)
-    session.set("grid.least_circles", 9)
+    session.set("grid.min_circles", 9)
     session.save(file)
     loaded = evical.Session.load(file)
     assert loaded.to_yaml(tmp_path) == session.to_yaml(tmp_path)
     assert loaded.board.spacing_m == 0.06
     assert loaded.imus["left_imu"].gyroscope_noise_density == 2e-3
     assert list(loaded.time_range_s) == [0.5, 5]
-    assert loaded.options["grid.least_circles"] == 9
+    assert loaded.options["grid.min_circles"] == 9
     assert loaded.options["report.split_half_check"] is False
     assert pathlib.Path(loaded.source) == file
 
@@ -73,10 +73,10 @@ def test_guesses_of_nothing_are_refused(tmp_path):
 
 def test_a_refused_option_changes_nothing_and_is_named(session):
     before = session.to_yaml()
-    with pytest.raises(evical.InputError, match="grid.least_circles"):
-        session.set("grid.least_circles", -1)
+    with pytest.raises(evical.InputError, match="grid.min_circles"):
+        session.set("grid.min_circles", -1)
     with pytest.raises(evical.InputError, match="no such option"):
-        session.set("grid.least_circle", 9)
+        session.set("grid.min_circle", 9)
     assert session.to_yaml() == before
 
 
@@ -133,7 +133,7 @@ def test_an_assignment_that_would_be_lost_is_refused(session):
 
 def test_a_session_goes_to_another_process(session):
     session.board.spacing_m = 0.06
-    session.set("grid.least_circles", 9)
+    session.set("grid.min_circles", 9)
     again = pickle.loads(pickle.dumps(session))
     assert again.to_yaml() == session.to_yaml()
     assert again.source == session.source
@@ -157,14 +157,14 @@ def test_log_lines_that_are_not_utf8_do_not_end_anything(tmp_path, caplog):
 
 
 def test_an_option_has_the_same_type_for_each_value(session):
-    for name, values in {"detection.window_travel_px": (3, 2.5), "grid.least_partial": (1, 0.5),
+    for name, values in {"detection.window_travel_px": (3, 2.5), "grid.min_partial": (1, 0.5),
                          "initialisation.gravity_m_s2": (10, 9.81)}.items():
         for value in values:
             session.set(name, value)
             assert isinstance(session.options[name], float) and session.options[name] == value
     for value in (7, 9):
-        session.set("grid.least_circles", value)
-        assert type(session.options["grid.least_circles"]) is int
+        session.set("grid.min_circles", value)
+        assert type(session.options["grid.min_circles"]) is int
     assert type(session.options["report.split_half_check"]) is bool
     assert type(session.options["intrinsics.model"]) is str
 

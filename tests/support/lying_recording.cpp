@@ -13,7 +13,7 @@
 namespace evical::test {
 namespace {
 
-constexpr std::size_t kLieBytes = 6, kMostLies = 4;
+constexpr std::size_t kLieBytes = 6, kMaxLies = 4;
 
 // A small sensor near a small board, so that a calibration takes a second.
 Scenario smallScenario() {
@@ -143,7 +143,7 @@ void LyingRecording::write(Content content) const {
 
 Session LyingRecording::tell(std::span<const std::uint8_t> lies) const {
   Content content = good_;
-  for (std::size_t k = 0; k < kMostLies && (k + 1) * kLieBytes <= lies.size(); ++k)
+  for (std::size_t k = 0; k < kMaxLies && (k + 1) * kLieBytes <= lies.size(); ++k)
     tellOne(lies.subspan(k * kLieBytes, kLieBytes), content);
   write(std::move(content));
   Session session = sessionFor(scenario_);

@@ -22,7 +22,7 @@ CameraIntrinsics davisLens() {
 EgomotionOptions quickEgomotion() {
   EgomotionOptions options;
   options.window_s = 0.08;
-  options.least_slopes = 60;
+  options.min_slopes = 60;
   options.depth_columns = 3;
   options.depth_rows = 2;
   return options;
@@ -33,7 +33,7 @@ std::vector<EdgeSlope> edgeSlopes(const MovingCamera& camera, const LensRays& le
   std::uniform_real_distribution<double> part(0.0, 1.0);
   std::normal_distribution<double> normal;
   std::vector<EdgeSlope> slopes;
-  constexpr double kLeastSpeed_px_s = 20.0;
+  constexpr double kMinSpeed_px_s = 20.0;
   // A camera at rest has none.
   for (int tried = 0; tried < 20 * camera.slopes && static_cast<int>(slopes.size()) < camera.slopes;
        ++tried) {
@@ -48,7 +48,7 @@ std::vector<EdgeSlope> edgeSlopes(const MovingCamera& camera, const LensRays& le
     const double angle = 6.2831853 * part(generator);
     const Eigen::Vector2d edge(std::cos(angle), std::sin(angle));
     const double speed = edge.dot(flow);
-    if (std::abs(speed) < kLeastSpeed_px_s) continue;
+    if (std::abs(speed) < kMinSpeed_px_s) continue;
     Eigen::Vector2d slope = edge / speed;
     const double sigma = camera.noise * slope.norm();
     slope += sigma * test::randomVector<2>([&] { return normal(generator); });

@@ -170,7 +170,7 @@ Session dvs128Blinking(const QString& real, int rows, int cols) {
   session.more_recordings.erase(session.more_recordings.begin());
   session.cameras.push_back({"camera", "events", {}, {}});
   session.reference = "camera";
-  session.options.intrinsics.edit().least_views = 8;
+  session.options.intrinsics.edit().min_views = 8;
   return session;
 }
 
@@ -185,7 +185,7 @@ cameras:
   camera: {stream: pictures}
 reference: camera
 )");
-  session.options.intrinsics.edit().least_views = 5;
+  session.options.intrinsics.edit().min_views = 5;
   return session;
 }
 

@@ -94,8 +94,8 @@ void TestBadSession::option_thatIsUnknownOrOutOfRange_isRefused() {
   SessionCase test;
   Outcome outcome = test.calibrate({"--set", "detection.methd=ring_vote"});
   VERIFY_REJECTED(test, outcome, "detection.methd.*'(detection.)?method'");
-  outcome = test.calibrate({"--set", "detection.longest_window_s=7"});
-  VERIFY_REJECTED(test, outcome, "detection.longest_window_s.*7 s.*0.2 s");
+  outcome = test.calibrate({"--set", "detection.max_window_s=7"});
+  VERIFY_REJECTED(test, outcome, "detection.max_window_s.*7 s.*0.2 s");
   test.append("options: {detection.method: guess}\n");
   outcome = test.calibrate();
   VERIFY_REJECTED(test, outcome, "guess.*ring_vote");
@@ -104,17 +104,16 @@ void TestBadSession::option_thatIsUnknownOrOutOfRange_isRefused() {
 void TestBadSession::options_thatExcludeEachOther_areRefused_data() {
   QTest::addColumn<QStringList>("settings");
   QTest::addColumn<QString>("says");
-  QTest::newRow("windows") << QStringList{"detection.shortest_window_s=0.1",
-                                          "detection.longest_window_s=0.005"}
-                           << "detection.shortest_window_s \\(0.1 s\\) is above detection.longest_window_s "
+  QTest::newRow("windows") << QStringList{"detection.min_window_s=0.1", "detection.max_window_s=0.005"}
+                           << "detection.min_window_s \\(0.1 s\\) is above detection.max_window_s "
                               "\\(0.005 s\\). Set .* at most 0.005 s, or .* at least 0.1 s";
-  QTest::newRow("polarity cosines") << QStringList{"tuning.tracking.least_polarity_cosine=0.9",
+  QTest::newRow("polarity cosines") << QStringList{"tuning.tracking.min_polarity_cosine=0.9",
                                                    "tuning.tracking.full_polarity_cosine=0.1"}
-                                    << "tuning.tracking.least_polarity_cosine \\(0.9\\) is above "
+                                    << "tuning.tracking.min_polarity_cosine \\(0.9\\) is above "
                                        "tuning.tracking.full_polarity_cosine \\(0.1\\)";
-  QTest::newRow("one against a default") << QStringList{"detection.shortest_window_s=0.1"}
-                                         << "detection.shortest_window_s \\(0.1 s\\) is above "
-                                            "detection.longest_window_s \\(0.05 s\\)";
+  QTest::newRow("one against a default") << QStringList{"detection.min_window_s=0.1"}
+                                         << "detection.min_window_s \\(0.1 s\\) is above "
+                                            "detection.max_window_s \\(0.05 s\\)";
 }
 
 void TestBadSession::options_thatExcludeEachOther_areRefused() {
@@ -135,9 +134,9 @@ void TestBadSession::options_thatExcludeEachOther_areRefused() {
 
 void TestBadSession::options_thatExcludeEachOtherOnTheWay_areTaken() {
   SessionCase test;
-  const Outcome outcome = test.calibrate(
-      {"--set", "tuning.bursts.shortest_gap_s=0.1", "--set", "tuning.bursts.longest_gap_s=0.05", "--set",
-       "tuning.bursts.shortest_gap_s=0.004", "--set", "tuning.bursts.longest_gap_s=0.15"});
+  const Outcome outcome =
+      test.calibrate({"--set", "tuning.bursts.min_gap_s=0.1", "--set", "tuning.bursts.max_gap_s=0.05",
+                      "--set", "tuning.bursts.min_gap_s=0.004", "--set", "tuning.bursts.max_gap_s=0.15"});
   VERIFY_OUTCOME(outcome, 0);
 }
 

@@ -600,7 +600,7 @@ void TestCommandLine::failure_isInTheResultOfAFolderThatWasThere() {
   const QString result = folder.filePath("result");
   QDir().mkpath(result);
   const Outcome outcome =
-      runProgram({"calibrate", session(), "-o", result, "--set", "initialisation.least_views=100000"});
+      runProgram({"calibrate", session(), "-o", result, "--set", "initialisation.min_views=100000"});
   VERIFY_EXIT(outcome, 1);
   const QByteArray yaml = readFile(result + "/result.yaml");
   QVERIFY(yaml.contains("status: failed"));

@@ -40,7 +40,7 @@ class ComputedTime {
 
 // A cancelled job ends after half a second at most. Computing time counts, so that tests can run in parallel;
 // tst_main_window measures wall time.
-inline double mostAfterCancel_ms() {
+inline double maxAfterCancel_ms() {
   return 500.0 * slowness();
 }
 

@@ -38,7 +38,7 @@ class TestCalibrationDocument : public QObject {
     QCOMPARE(document.title(), QFileInfo(file).dir().dirName() + "/session.yaml");
 
     document.edit(withRows(document, 9), "Rows");
-    document.setOption("grid.least_circles", "9");
+    document.setOption("grid.min_circles", "9");
     QVERIFY(document.modified());
     const QString copy = scratch_.filePath("copy.yaml");
     document.save(copy);
@@ -93,33 +93,33 @@ class TestCalibrationDocument : public QObject {
     CalibrationDocument document;
     document.open(evical::ui::test::simulatedSession());
     QSignalSpy changed(&document, &CalibrationDocument::sessionChanged);
-    document.setOption("grid.least_circles", "9");
-    QCOMPARE(document.session().options.front_end->grid.least_circles, 9);
+    document.setOption("grid.min_circles", "9");
+    QCOMPARE(document.session().options.front_end->grid.min_circles, 9);
     document.undoStack().undo();
     QCOMPARE(document.session().options, CalibrationOptions{});
     QVERIFY(!document.modified());
     document.undoStack().redo();
-    QCOMPARE(document.session().options.front_end->grid.least_circles, 9);
+    QCOMPARE(document.session().options.front_end->grid.min_circles, 9);
     QCOMPARE(changed.count(), 3);
     document.resetOptions();
     QCOMPARE(document.session().options, CalibrationOptions{});
     document.undoStack().undo();
-    QCOMPARE(document.session().options.front_end->grid.least_circles, 9);
+    QCOMPARE(document.session().options.front_end->grid.min_circles, 9);
   }
 
   void stepsOfOneOption_areOneUndo() {
     CalibrationDocument document;
     document.open(evical::ui::test::simulatedSession());
-    for (const char* value : {"9", "10", "11"}) document.setOption("grid.least_circles", value);
+    for (const char* value : {"9", "10", "11"}) document.setOption("grid.min_circles", value);
     QCOMPARE(document.undoStack().count(), 1);
-    document.setOption("tuning.bursts.least_events", "3");
+    document.setOption("tuning.bursts.min_events", "3");
     QCOMPARE(document.undoStack().count(), 2);
   }
 
   void option_outOfRange_isRefused() {
     CalibrationDocument document;
     document.open(evical::ui::test::simulatedSession());
-    QVERIFY_THROWS_EXCEPTION(CalibrationError, document.setOption("grid.least_circles", "-5"));
+    QVERIFY_THROWS_EXCEPTION(CalibrationError, document.setOption("grid.min_circles", "-5"));
     QVERIFY_THROWS_EXCEPTION(CalibrationError, document.setOption("grid.no_such", "5"));
     QVERIFY(!document.modified());
   }
@@ -127,17 +127,17 @@ class TestCalibrationDocument : public QObject {
   void optionThatAnotherExcludes_isRefused() {
     CalibrationDocument document;
     document.open(evical::ui::test::simulatedSession());
-    QVERIFY_THROWS_EXCEPTION(OptionConflict, document.setOption("detection.shortest_window_s", "0.1"));
+    QVERIFY_THROWS_EXCEPTION(OptionConflict, document.setOption("detection.min_window_s", "0.1"));
     QVERIFY(!document.modified());
-    document.setOption("detection.longest_window_s", "0.15");
-    document.setOption("detection.shortest_window_s", "0.1");
-    QCOMPARE(document.session().options.front_end->detection.shortest_window_s, 0.1);
+    document.setOption("detection.max_window_s", "0.15");
+    document.setOption("detection.min_window_s", "0.1");
+    QCOMPARE(document.session().options.front_end->detection.min_window_s, 0.1);
   }
 
   void sessionWithOptionsThatExcludeEachOther_hasAProblem() {
     Session session = readSession(evical::ui::test::simulatedSession().toStdString());
     QCOMPARE(sessionProblems(session).size(), std::size_t(0));
-    session.options.front_end.edit().tracking.least_polarity_cosine = 0.9;
+    session.options.front_end.edit().tracking.min_polarity_cosine = 0.9;
     const std::vector<SessionProblem> problems = sessionProblems(session);
     QCOMPARE(problems.size(), std::size_t(1));
     QVERIFY2(problems[0].text.contains("tuning.tracking.full_polarity_cosine (0.7)"),
@@ -150,7 +150,7 @@ class TestCalibrationDocument : public QObject {
     QVERIFY(!document.runIsOutdated());
     document.addRun({std::make_shared<CalibrationRun>(), document.session(), "log"});
     QVERIFY(!document.runIsOutdated());
-    document.setOption("grid.least_circles", "9");
+    document.setOption("grid.min_circles", "9");
     QVERIFY(document.runIsOutdated());
     document.undoStack().undo();
     QVERIFY(!document.runIsOutdated());

@@ -258,7 +258,7 @@ class TestDetectionFrames : public QObject {
     settleFrame(screen);
     const std::size_t points = screen.analysis()->points().size();
     Session edited = recorded_->session;
-    edited.options.frames.edit().smallest_sigma_px = 1.5;
+    edited.options.frames.edit().min_sigma_px = 1.5;
     screen.setSession(edited);
     const auto sigma_px = [&] {
       return std::sqrt(0.5 * screen.analysis()->points().front().covariance_px2.trace());

@@ -225,7 +225,7 @@ class TestDetectionScreen : public QObject {
   void analysis_saysWhereItWasLost() {
     DetectionScreenAsked asked(*recorded_);
     asked.question.options.detection.try_both = false;
-    asked.question.options.normal_flow.least_cluster_px = 10000;
+    asked.question.options.normal_flow.min_cluster_px = 10000;
     const WindowAnalysis analysis = asked.at(recorded_->pass.cameras.front().windows[40]);
     QCOMPARE(analysis.outcome, WindowOutcome::TooFewCircles);
     std::string failed;
@@ -242,7 +242,7 @@ class TestDetectionScreen : public QObject {
     const WindowAnalysis good = asked.at(recorded_->goodWindow());
     for (const CircleObservation& circle : good.trace().circles) bursts.push_back(circle.events);
     std::sort(bursts.begin(), bursts.end());
-    asked.question.options.tracking.least_circle_bursts = bursts.at(2) + 1;  // the poorest three have fewer
+    asked.question.options.tracking.min_circle_bursts = bursts.at(2) + 1;  // the poorest three have fewer
     const WindowAnalysis analysis = asked.again();
     QVERIFY(analysis.trace().circles.size() < bursts.size());
     const std::string text = analysis.stages.back().text;
@@ -257,8 +257,8 @@ class TestDetectionScreen : public QObject {
     const WindowAnalysis good = asked.at(recorded_->goodWindow());
     for (const CircleObservation& circle : good.trace().circles) bursts.push_back(circle.events);
     std::nth_element(bursts.begin(), bursts.begin() + 2, bursts.end());
-    asked.question.options.tracking.least_circle_bursts = bursts.at(2) + 1;
-    asked.question.options.grid.least_partial = 1.0;
+    asked.question.options.tracking.min_circle_bursts = bursts.at(2) + 1;
+    asked.question.options.grid.min_partial = 1.0;
     const WindowAnalysis analysis = asked.again();
     QCOMPARE(analysis.outcome, WindowOutcome::TooFewInGrid);
     QVERIFY(analysis.trace().motion);
@@ -324,7 +324,7 @@ class TestDetectionScreen : public QObject {
     showGoodWindow(screen, *recorded_);
     QCOMPARE(screen.analysis()->outcome, WindowOutcome::Complete);
     Session changed = recorded_->session;
-    changed.options.front_end.edit().grid.least_circles = 500;
+    changed.options.front_end.edit().grid.min_circles = 500;
     screen.setSession(changed);
     QTRY_COMPARE_WITH_TIMEOUT(screen.analysis()->outcome, WindowOutcome::TooFewCircles, 20000 * kSlowdown);
     QVERIFY2(screen.panel().text().contains("Failed at moving circles"), qPrintable(screen.panel().text()));
@@ -439,7 +439,7 @@ class TestDetectionScreen : public QObject {
     for (std::size_t k = 0; k < kLayerCount; ++k) screen.setLayerVisible(static_cast<Layer>(k), true);
     Session changed = recorded_->session;
     changed.options.front_end.edit().grid.ambiguity_margin = 100;
-    changed.options.front_end.edit().tracking.least_inliers = 0.97;
+    changed.options.front_end.edit().tracking.min_inliers = 0.97;
     screen.setSession(changed);
     QTest::qWait(500);
     QVERIFY(save("detection_all_layers"));

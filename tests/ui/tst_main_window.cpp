@@ -136,7 +136,7 @@ class TestMainWindow : public QObject {
     openTheReport(test);
 
     test.window.files().open(session);
-    QCOMPARE(test.document().session().options.front_end->grid.least_circles, 9);
+    QCOMPARE(test.document().session().options.front_end->grid.min_circles, 9);
     QVERIFY(!test.document().last().run);
     QVERIFY(test.window.close());
   }
@@ -319,7 +319,7 @@ class TestMainWindow : public QObject {
   void unsavedChanges_areAskedAbout() {
     WindowFixture test;
     test.window.files().open(simulatedSession());
-    test.document().setOption("grid.least_circles", "9");
+    test.document().setOption("grid.min_circles", "9");
     QVERIFY(test.window.isWindowModified());
     answerQuestion(QMessageBox::Cancel);
     QVERIFY(!test.window.close());
@@ -534,8 +534,8 @@ class TestMainWindow : public QObject {
 
   // The minimum of up to three runs: other load on the machine or its host can only increase the time.
   void calibrating_neverStallsTheWindow() {
-    double least_ms = std::numeric_limits<double>::max();
-    for (int run = 0; run < 3 && least_ms >= 50.0 * slowness(); ++run) {
+    double min_ms = std::numeric_limits<double>::max();
+    for (int run = 0; run < 3 && min_ms >= 50.0 * slowness(); ++run) {
       WindowFixture test;
       test.window.files().open(simulatedSession());
       StallMeter meter;
@@ -546,9 +546,9 @@ class TestMainWindow : public QObject {
       const double longest_ms = others.quiet() ? meter.longest_ms() : meter.longestWork_ms();
       qInfo("%.1f ms, others keep %.1f processors busy", longest_ms, others.processors());
       QVERIFY(meter.beats() > 10);
-      least_ms = std::min(least_ms, longest_ms);
+      min_ms = std::min(min_ms, longest_ms);
     }
-    QVERIFY(least_ms < 50.0 * slowness());
+    QVERIFY(min_ms < 50.0 * slowness());
   }
 
   void everyScreen_hasAPicture() {
@@ -581,7 +581,7 @@ class TestMainWindow : public QObject {
     auto* const search = form->findChild<QLineEdit*>(QString(), Qt::FindDirectChildrenOnly);
     QTest::mouseClick(search, Qt::LeftButton);
     QTest::keyClicks(search, "least circles");
-    auto* const field = form->editor("grid.least_circles")->findChild<QLineEdit*>();
+    auto* const field = form->editor("grid.min_circles")->findChild<QLineEdit*>();
     QVERIFY(field->isVisible());
     field->selectAll();
     QTest::keyClicks(field, "9");
@@ -594,7 +594,7 @@ class TestMainWindow : public QObject {
     QVERIFY(test.window.isWindowModified());
     test.press(Qt::Key_S, Qt::ControlModifier);
     QVERIFY(!test.window.isWindowModified());
-    QCOMPARE(readSession(session.toStdString()).options.front_end->grid.least_circles, 9);
+    QCOMPARE(readSession(session.toStdString()).options.front_end->grid.min_circles, 9);
   }
 
   void exportTheResult(WindowFixture& test) {

@@ -110,7 +110,7 @@ class TestMainWindowBadInput : public QObject {
     Session session = readSession(simulatedSession().toStdString());
     session.cameras.front().name = std::string(20'000, 'n');
     test.document().startSession(session);
-    test.document().setOption("grid.least_circles", "9");
+    test.document().setOption("grid.min_circles", "9");
     answerFileDialog(disk.path() + "/session.yaml");
     QVERIFY(!test.window.files().saveAs());
     QVERIFY2(test.child<ErrorPanel>()->text().contains("not saved"),

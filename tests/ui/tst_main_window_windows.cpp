@@ -146,7 +146,7 @@ class TestMainWindowWindows : public QObject {
     changed.cameras.front().name = "renamed";
     test.document().edit(changed, "Rename");
     QVERIFY(!test.document().runIsOutdated());
-    changed.options.front_end.edit().grid.least_circles += 1;
+    changed.options.front_end.edit().grid.min_circles += 1;
     test.document().edit(changed, "Detect again");
     QSignalSpy stages(&test.runner(), &JobRunner::stageStarted);
     test.finished.clear();

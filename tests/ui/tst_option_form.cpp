@@ -87,26 +87,26 @@ class TestOptionForm : public QObject {
 
   void typedNumber_isSaid_andMarkedAsChanged() {
     OptionFormFixture test;
-    test.type("grid.least_circles", "9");
+    test.type("grid.min_circles", "9");
     QCOMPARE(test.edited.count(), 1);
-    QCOMPARE(test.options.front_end->grid.least_circles, 9);
-    QVERIFY(test.form.editor("grid.least_circles")->isChanged());
+    QCOMPARE(test.options.front_end->grid.min_circles, 9);
+    QVERIFY(test.form.editor("grid.min_circles")->isChanged());
   }
 
   void numberOutOfRange_isRefusedNextToTheField_untilItIsMended() {
     OptionFormFixture test;
-    const int before = test.options.front_end->grid.least_circles;
-    test.type("grid.least_circles", "-3");
-    QCOMPARE(test.options.front_end->grid.least_circles, before);
-    QVERIFY(test.allText("grid.least_circles").contains("below the minimum"));
-    QVERIFY(test.allText("grid.least_circles").contains(QString("It stays at %1").arg(before)));
-    QCOMPARE(test.field("grid.least_circles")->text(), QString::number(before));
-    test.type("grid.least_circles", "banana");
-    QVERIFY(test.allText("grid.least_circles").contains("'banana' is not a whole number"));
-    QCOMPARE(test.field("grid.least_circles")->text(), QString::number(before));
-    test.type("grid.least_circles", "9");
-    QVERIFY(!test.allText("grid.least_circles").contains("below the minimum"));
-    QCOMPARE(test.options.front_end->grid.least_circles, 9);
+    const int before = test.options.front_end->grid.min_circles;
+    test.type("grid.min_circles", "-3");
+    QCOMPARE(test.options.front_end->grid.min_circles, before);
+    QVERIFY(test.allText("grid.min_circles").contains("below the minimum"));
+    QVERIFY(test.allText("grid.min_circles").contains(QString("It stays at %1").arg(before)));
+    QCOMPARE(test.field("grid.min_circles")->text(), QString::number(before));
+    test.type("grid.min_circles", "banana");
+    QVERIFY(test.allText("grid.min_circles").contains("'banana' is not a whole number"));
+    QCOMPARE(test.field("grid.min_circles")->text(), QString::number(before));
+    test.type("grid.min_circles", "9");
+    QVERIFY(!test.allText("grid.min_circles").contains("below the minimum"));
+    QCOMPARE(test.options.front_end->grid.min_circles, 9);
   }
 
   void slider_turnsTheNumber_andIsTurnedByIt() {
@@ -159,23 +159,23 @@ class TestOptionForm : public QObject {
   void searchedWords_standOut() {
     OptionFormFixture test;
     QTest::keyClicks(test.search(), "least circ");
-    QVERIFY(test.allText("grid.least_circles").contains("background-color"));
+    QVERIFY(test.allText("grid.min_circles").contains("background-color"));
     test.search()->clear();
-    QVERIFY(!test.allText("grid.least_circles").contains("background-color"));
+    QVERIFY(!test.allText("grid.min_circles").contains("background-color"));
   }
 
   void optionWithoutEffect_saysWhy() {
     OptionFormFixture test;
-    test.form.setIdle({{"grid.least_circles", "there is no board"}});
-    QVERIFY(test.allText("grid.least_circles").contains("No effect here: there is no board."));
+    test.form.setIdle({{"grid.min_circles", "there is no board"}});
+    QVERIFY(test.allText("grid.min_circles").contains("No effect here: there is no board."));
     test.form.setIdle({});
-    QVERIFY(!test.allText("grid.least_circles").contains("No effect"));
+    QVERIFY(!test.allText("grid.min_circles").contains("No effect"));
   }
 
   void optionThatAnotherExcludes_isRefusedNextToBoth_untilOneIsMended() {
     OptionFormFixture test;
-    const QString lower = "detection.shortest_window_s", upper = "detection.longest_window_s";
-    const QString said = "detection.shortest_window_s (0.1 s) is above detection.longest_window_s (0.05 s)";
+    const QString lower = "detection.min_window_s", upper = "detection.max_window_s";
+    const QString said = "detection.min_window_s (0.1 s) is above detection.max_window_s (0.05 s)";
     test.type(lower, "0.1");
     QCOMPARE(test.options, CalibrationOptions{});
     QVERIFY(test.field(lower)->text() != QString("0.1"));
@@ -183,7 +183,7 @@ class TestOptionForm : public QObject {
     test.type(upper, "0.15");  // accepted, since the value that was refused does not count
     for (const QString& name : {lower, upper}) QVERIFY2(!test.allText(name).contains(said), qPrintable(name));
     test.type(lower, "0.1");
-    QCOMPARE(test.options.front_end->detection.shortest_window_s, 0.1);
+    QCOMPARE(test.options.front_end->detection.min_window_s, 0.1);
     QVERIFY(!test.allText(lower).contains(said));
     test.type(upper, "0.05");
     QVERIFY(test.allText(lower).contains(said));
@@ -197,12 +197,11 @@ class TestOptionForm : public QObject {
 
   void resetThatAnotherExcludes_isRefusedNextToBoth() {
     OptionFormFixture test;
-    test.type("detection.longest_window_s", "0.15");
-    test.type("detection.shortest_window_s", "0.1");
-    QTest::mouseClick(test.form.editor("detection.longest_window_s")->findChild<QToolButton*>(),
-                      Qt::LeftButton);
-    QCOMPARE(test.options.front_end->detection.longest_window_s, 0.15);
-    for (const QString name : {"detection.shortest_window_s", "detection.longest_window_s"})
+    test.type("detection.max_window_s", "0.15");
+    test.type("detection.min_window_s", "0.1");
+    QTest::mouseClick(test.form.editor("detection.max_window_s")->findChild<QToolButton*>(), Qt::LeftButton);
+    QCOMPARE(test.options.front_end->detection.max_window_s, 0.15);
+    for (const QString name : {"detection.min_window_s", "detection.max_window_s"})
       QVERIFY2(test.allText(name).contains("is above"), qPrintable(name));
   }
 
@@ -226,25 +225,25 @@ class TestOptionForm : public QObject {
 
   void expertOption_thatIsChangedOrSearchedFor_isShown() {
     OptionFormFixture test;
-    QVERIFY(!test.form.shownOptions().contains("grid.least_partial"));
-    test.search()->setText("least_partial");
-    QCOMPARE(test.form.shownOptions(), QStringList{"grid.least_partial"});
+    QVERIFY(!test.form.shownOptions().contains("grid.min_partial"));
+    test.search()->setText("min_partial");
+    QCOMPARE(test.form.shownOptions(), QStringList{"grid.min_partial"});
     test.search()->clear();
-    QVERIFY(!test.form.shownOptions().contains("grid.least_partial"));
-    setOption(test.options, "grid.least_partial", "0.5");
+    QVERIFY(!test.form.shownOptions().contains("grid.min_partial"));
+    setOption(test.options, "grid.min_partial", "0.5");
     test.form.setRows(documentedOptions(test.options));
-    QVERIFY(test.form.shownOptions().contains("grid.least_partial"));
+    QVERIFY(test.form.shownOptions().contains("grid.min_partial"));
   }
 
   void reset_bringsTheDefaultBack() {
     OptionFormFixture test;
-    const int before = test.options.front_end->grid.least_circles;
-    test.type("grid.least_circles", "9");
-    OptionEditor* const editor = test.form.editor("grid.least_circles");
+    const int before = test.options.front_end->grid.min_circles;
+    test.type("grid.min_circles", "9");
+    OptionEditor* const editor = test.form.editor("grid.min_circles");
     QTest::mouseClick(editor->findChild<QToolButton*>(), Qt::LeftButton);
-    QCOMPARE(test.options.front_end->grid.least_circles, before);
+    QCOMPARE(test.options.front_end->grid.min_circles, before);
     QVERIFY(!editor->isChanged());
-    QCOMPARE(test.field("grid.least_circles")->text(), QString::number(before));
+    QCOMPARE(test.field("grid.min_circles")->text(), QString::number(before));
   }
 
   void switchesAndChoices_areBoxes() {
@@ -267,7 +266,7 @@ class TestOptionForm : public QObject {
     OptionFormFixture test;
     test.form.showExpert(true);
     QTest::keyClicks(test.search(), "least circles");
-    QVERIFY(test.form.shownOptions().contains("grid.least_circles"));
+    QVERIFY(test.form.shownOptions().contains("grid.min_circles"));
     QVERIFY(test.form.shownOptions().size() < 8);
     test.search()->setText("zzz nothing has this");
     QVERIFY(test.form.shownOptions().isEmpty());
@@ -277,9 +276,9 @@ class TestOptionForm : public QObject {
 
   void rowsFromElsewhere_areShown() {
     OptionFormFixture test;
-    setOption(test.options, "grid.least_circles", "11");
+    setOption(test.options, "grid.min_circles", "11");
     test.form.setRows(documentedOptions(test.options));
-    QCOMPARE(test.field("grid.least_circles")->text(), QString("11"));
+    QCOMPARE(test.field("grid.min_circles")->text(), QString("11"));
     QCOMPARE(test.edited.count(), 0);
   }
 
@@ -305,7 +304,7 @@ class TestOptionForm : public QObject {
     test.form.showExpert(expert);
     for (QToolButton* const heading : test.form.findChildren<QToolButton*>("group"))
       if (heading->text() == "Detection" || heading->text().contains("solver")) heading->setChecked(true);
-    test.type("detection.shortest_window_s", "0.1");
+    test.type("detection.min_window_s", "0.1");
     QTest::qWait(50);
     QVERIFY(test.form.minimumSizeHint().width() <= 340);
     QVERIFY(test.form.grab().save(

@@ -113,7 +113,7 @@ class TestRepeatPage : public QObject {
     WindowFixture test;
     test.window.files().open(copyOfSimulatedSession(scratch_.path()));
     QTRY_VERIFY(test.document().hasSession());
-    test.document().setOption("grid.least_circles", "9");
+    test.document().setOption("grid.min_circles", "9");
     test.child<RepeatScreen>()->files().add({test.document().file(), simulatedFurtherSession(2)});
     test.window.showScreen("repeat");
     QTest::mouseClick(button(test, "start_repeat"), Qt::LeftButton);
@@ -131,7 +131,7 @@ class TestRepeatPage : public QObject {
     const ComputedTime since_cancel;
     QTest::mouseClick(button(test, "cancel_repeat"), Qt::LeftButton);
     QCOMPARE(test.waitForJob(), JobOutcome::Cancelled);
-    QVERIFY2(since_cancel.elapsed_ms() < mostAfterCancel_ms(),
+    QVERIFY2(since_cancel.elapsed_ms() < maxAfterCancel_ms(),
              qPrintable(QString::number(since_cancel.elapsed_ms())));
   }
   void shows(WindowFixture& test, const Repeatability& repeat) {

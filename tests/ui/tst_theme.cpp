@@ -96,13 +96,13 @@ class TestTheme : public QObject {
  private slots:
   // 2.3 is just noticeable between adjacent colours; separate thin lines need far more.
   void states_andAxes_areToldApart_byWhoSeesNoRedOrNoGreen() {
-    constexpr double kWellApart = 20.0, kLeastContrast = 3.0;
+    constexpr double kWellApart = 20.0, kMinContrast = 3.0;
     for (const Appearance appearance : {Appearance::Light, Appearance::Dark}) {
       applyTheme(*qApp, appearance);
       const Theme& t = theme();
       for (const std::array<QColor, 3>& three : {std::array{t.good, t.warning, t.bad}, t.axes}) {
         for (std::size_t i = 0; i < 3; ++i) {
-          QVERIFY2(contrast(three[i], t.panel) > kLeastContrast, qPrintable(three[i].name()));
+          QVERIFY2(contrast(three[i], t.panel) > kMinContrast, qPrintable(three[i].name()));
           for (const Vision& vision : {kDeuteranopia, kProtanopia})
             QVERIFY2(difference(three[i], three[(i + 1) % 3], vision) > kWellApart,
                      qPrintable(three[i].name() + three[(i + 1) % 3].name()));

@@ -154,11 +154,11 @@ void TestTrajectoryTime::halfMinute_drawsFast() {
   QVERIFY(QTest::qWaitFor([&] { return !screen.busy(); }, kWorkPatience_ms));
   screen.setTime(10.0);
   QImage target(1000, 700, QImage::Format_RGB32);
-  constexpr int kMostFrames = 400;
-  const double most_ms = 20.0 * evical::ui::test::slowness();
+  constexpr int kMaxFrames = 400;
+  const double max_ms = 20.0 * evical::ui::test::slowness();
   std::vector<double> times_ms;
-  for (int k = 0;
-       k < kMostFrames && (k < 40 || *std::min_element(times_ms.begin(), times_ms.end()) >= most_ms); ++k) {
+  for (int k = 0; k < kMaxFrames && (k < 40 || *std::min_element(times_ms.begin(), times_ms.end()) >= max_ms);
+       ++k) {
     QTest::keyClick(view.get(), Qt::Key_Left);
     QElapsedTimer timer;
     timer.start();
@@ -169,7 +169,7 @@ void TestTrajectoryTime::halfMinute_drawsFast() {
   const double median_ms = times_ms[times_ms.size() / 2];
   qInfo("30 s at 1000x700: least %.1f, median %.1f, most %.1f ms", times_ms.front(), median_ms,
         times_ms.back());
-  QVERIFY2(times_ms.front() < most_ms, qPrintable(QString::number(times_ms.front())));
+  QVERIFY2(times_ms.front() < max_ms, qPrintable(QString::number(times_ms.front())));
 }
 
 void TestTrajectoryTime::liveStates_keepTheView() {

@@ -297,7 +297,7 @@ class TestWindowList : public QObject {
     QVERIFY(list.pictures().of(last) == nullptr);
     table.verticalScrollBar()->setValue(table.verticalScrollBar()->maximum());
     QTRY_VERIFY_WITH_TIMEOUT(list.pictures().of(last) != nullptr, 20'000 * kSlowdown);
-    QVERIFY(list.pictures().count() <= WindowPictures::kMostKept);
+    QVERIFY(list.pictures().count() <= WindowPictures::kMaxKept);
     const QImage picture = list.pictures().of(last)->toImage();
     QVERIFY(picture.width() <= kPictureSize_px.width() && picture.height() <= kPictureSize_px.height());
     QVERIFY(picture.height() == kPictureSize_px.height() || picture.width() == kPictureSize_px.width());

@@ -22,7 +22,7 @@ BurstBand::BurstBand(std::shared_ptr<const EventCache> cache, Resolution resolut
     : cache_(std::move(cache)),
       resolution_px_(resolution_px),
       options_(options),
-      lead_ns_(nanosecondsFrom(options.longest_burst_s + options.longest_gap_s)),
+      lead_ns_(nanosecondsFrom(options.max_burst_s + options.max_gap_s)),
       lag_ns_(nanosecondsFrom(longestHandOut_s(options))) {}
 
 void BurstBand::restart(std::int64_t begin_ns) {

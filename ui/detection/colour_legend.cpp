@@ -89,9 +89,8 @@ void paintDirections(QPainter& painter, const QRect& room) {
 }  // namespace
 
 void paintLegend(QPainter& painter, const QRect& room, ColourLegend legend) {
-  constexpr int kLeastWidth_px = 280, kLeastHeight_px = 160;
-  if (legend == ColourLegend::None || room.width() < kLeastWidth_px || room.height() < kLeastHeight_px)
-    return;
+  constexpr int kMinWidth_px = 280, kMinHeight_px = 160;
+  if (legend == ColourLegend::None || room.width() < kMinWidth_px || room.height() < kMinHeight_px) return;
   painter.save();
   painter.setRenderHint(QPainter::Antialiasing);
   if (legend == ColourLegend::Polarity)

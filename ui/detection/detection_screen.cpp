@@ -298,7 +298,7 @@ void DetectionScreen::request() {
   DetectionRequest wish;
   wish.time_s = time_s_;
   wish.half_width_s =
-      window ? window->half_width_s : 0.25 * (detection.shortest_window_s + detection.longest_window_s);
+      window ? window->half_width_s : 0.25 * (detection.min_window_s + detection.max_window_s);
   wish.style = style();
   wish.picture = picture();
   wish.search = !playing || shown(Layer::Circles);

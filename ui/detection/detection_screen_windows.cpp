@@ -18,10 +18,10 @@
 namespace evical::ui {
 namespace {
 
-constexpr int kRoomForBoth_px = 1350;                   // for the list, the layers and a picture between them
-constexpr int kSideWidth_px = 272;                      // of layers and verdict
-constexpr double kListShare = 0.455;                    // of the page
-constexpr int kListLeast_px = 330, kListMost_px = 360;  // leaves a picture of 1000 px at a width of 1920
+constexpr int kRoomForBoth_px = 1350;                // for the list, the layers and a picture between them
+constexpr int kSideWidth_px = 272;                   // of layers and verdict
+constexpr double kListShare = 0.455;                 // of the page
+constexpr int kListMin_px = 330, kListMax_px = 360;  // leaves a picture of 1000 px at a width of 1920
 
 int countOnlyIn(const std::vector<double>& these, const std::vector<double>& others) {
   std::vector<double> only;
@@ -72,7 +72,7 @@ void DetectionScreen::setWindowsListed(bool listed) {
 void DetectionScreen::layOutSides() {
   const bool room = width() >= kRoomForBoth_px;
   const bool listed = list_wanted_.value_or(room);
-  const int list_px = std::clamp(static_cast<int>(kListShare * width()), kListLeast_px, kListMost_px);
+  const int list_px = std::clamp(static_cast<int>(kListShare * width()), kListMin_px, kListMax_px);
   list_->setFixedWidth(list_px);
   list_->setVisible(listed);
   // In a narrow window the list takes the place of the layers, above the verdict.

@@ -18,7 +18,7 @@ namespace evical::ui {
 namespace {
 
 constexpr double kBin_s = 0.01;
-constexpr std::size_t kMostBins = 10'000'000;  // a day; no curve beyond a larger clock jump
+constexpr std::size_t kMaxBins = 10'000'000;  // a day; no curve beyond a larger clock jump
 constexpr auto kTellEvery = std::chrono::milliseconds(100);
 
 // Sums and counts by bin of time.
@@ -26,7 +26,7 @@ class Bins {
  public:
   void add(double time_s, double value) {
     const double bin = std::floor(time_s / kBin_s);
-    if (!(bin >= 0.0) || bin >= static_cast<double>(kMostBins)) return;
+    if (!(bin >= 0.0) || bin >= static_cast<double>(kMaxBins)) return;
     const auto k = static_cast<std::size_t>(bin);
     if (k >= counts_.size()) {
       counts_.resize(k + 1, 0);

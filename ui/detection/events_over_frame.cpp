@@ -108,10 +108,10 @@ double EventsOverFrame::eventTime_s(double frame_time_s) const {
 }
 
 int EventsOverFrame::pixelsOfEvent() const {
-  constexpr double kMost = 8.0;
+  constexpr double kMax = 8.0;
   const double times =
       frames().lens.inUse()->focal_length_px.mean() / events().lens.inUse()->focal_length_px.mean();
-  return static_cast<int>(std::lround(std::clamp(times, 1.0, kMost)));
+  return static_cast<int>(std::lround(std::clamp(times, 1.0, kMax)));
 }
 
 // For a rolling shutter: exposure time of the row in which the point is seen.

@@ -79,7 +79,7 @@ class Tracking {
  private:
   // Blurred views are shown, too.
   static FrameOptions unblurred(FrameOptions options) {
-    options.largest_blur_px = std::numeric_limits<double>::infinity();
+    options.max_blur_px = std::numeric_limits<double>::infinity();
     return options;
   }
 
@@ -106,7 +106,7 @@ void track(const FrameQuestion& question, const Neighbourhood& neighbours, Windo
   if (view == seen.views.end()) return;
   frame.points = view->circles;
   frame.blur_px = blurOf(*view, frame.exposure_s);
-  if (frame.blur_px > question.options.largest_blur_px) analysis.outcome = WindowOutcome::Blurred;
+  if (frame.blur_px > question.options.max_blur_px) analysis.outcome = WindowOutcome::Blurred;
 }
 
 // Points are shown even if they are too few for a view.

@@ -23,10 +23,10 @@ std::string whichText(const FrameFinding& frame) {
 StageReport pictureStage(const WindowAnalysis& analysis, const FrameOptions& options) {
   const FrameFinding& frame = *analysis.frame;
   const double contrast = frame.brightest - frame.darkest;
-  const bool pale = !isOfUse(analysis) && contrast < options.least_contrast;
+  const bool pale = !isOfUse(analysis) && contrast < options.min_contrast;
   std::string text =
       print("90 %% of the pixels are between %.0f and %.0f of 255", frame.darkest, frame.brightest);
-  if (pale) text += print(": too little contrast (least_contrast is %.0f)", options.least_contrast);
+  if (pale) text += print(": too little contrast (min_contrast is %.0f)", options.min_contrast);
   return {"picture", pale ? StageVerdict::Failed : StageVerdict::Passed, text};
 }
 
@@ -46,8 +46,8 @@ StageReport pointsStage(const WindowAnalysis& analysis, const FrameOptions& opti
   std::string text = print("%zu of %d", points.size(), count);
   if (analysis.outcome == WindowOutcome::TooFewInGrid)
     return {"points", StageVerdict::Failed,
-            text + print(": at least %.0f needed (least_points is %.2f)",
-                         std::max(4.0, std::ceil(options.least_points * count)), options.least_points)};
+            text + print(": at least %.0f needed (min_points is %.2f)",
+                         std::max(4.0, std::ceil(options.min_points * count)), options.min_points)};
   std::vector<double> sigmas_px;
   for (const CircleObservation& point : points)
     sigmas_px.push_back(std::sqrt(0.5 * point.covariance_px2.trace()));
@@ -62,8 +62,8 @@ StageReport blurStage(const WindowAnalysis& analysis, const FrameOptions& option
   if (!(frame.exposure_s > 0.0))
     return {"blur", StageVerdict::Note, "unknown: the recording does not contain the exposure"};
   return {"blur", blurred ? StageVerdict::Failed : StageVerdict::Passed,
-          print("the board moves %.2f px during the exposure (largest_blur_px is %.1f)", frame.blur_px,
-                options.largest_blur_px)};
+          print("the board moves %.2f px during the exposure (max_blur_px is %.1f)", frame.blur_px,
+                options.max_blur_px)};
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 // Fast enough for the eye; pictures cost the run computing time.
-constexpr auto kLeastInterval = std::chrono::milliseconds(60);
+constexpr auto kMinInterval = std::chrono::milliseconds(60);
 constexpr auto kReportInterval = std::chrono::milliseconds(200);
 
 }  // namespace
@@ -69,7 +69,7 @@ class LiveDetection::CameraObserver final : public FrontEndObserver {
  private:
   bool due() {
     const Clock::time_point now = Clock::now();
-    if (now - sent_ < kLeastInterval) return false;
+    if (now - sent_ < kMinInterval) return false;
     sent_ = now;
     return true;
   }

@@ -42,8 +42,8 @@ std::string jointText(const BoardSearch& search, const WindowAnalysis& analysis,
     case WindowOutcome::TooFewInGrid:
       return print(
           "too few of the %d circles are confirmed, or too many visible ones are missing (%.0f %% "
-          "needed, most_missing is %.2f)",
-          count, 100.0 * options.least_partial, options.most_missing);
+          "needed, max_missing is %.2f)",
+          count, 100.0 * options.min_partial, options.max_missing);
     default:
       break;
   }
@@ -62,14 +62,14 @@ void addSearchStages(const BoardSearch& search, const WindowAnalysis& analysis,
   };
   add(SearchStage::Bursts, "edge bursts",
       print("%d within \u00b1%.1f ms (at least %d needed)", search.bursts, 1e3 * search.half_window_s,
-            options.detection.least_window_bursts));
+            options.detection.min_window_bursts));
   add(SearchStage::Candidates, "candidates", candidateText(search, analysis.flow.arcs));
   add(SearchStage::Circles, "moving circles",
       print("%zu of %zu candidates are moving circles (at least %d needed)", search.circles.size(),
-            search.candidates.size(), options.grid.least_circles));
+            search.candidates.size(), options.grid.min_circles));
   add(SearchStage::Lattice, "lattice",
       print("%zu circles in one lattice (at least %d needed)", search.lattice.size(),
-            options.grid.least_circles));
+            options.grid.min_circles));
   add(SearchStage::Placement, "placement", placementText(search));
   add(SearchStage::JointFit, "joint fit", jointText(search, analysis, options.grid));
 }
@@ -80,10 +80,10 @@ std::string trackingText(const WindowTrace& trace, const FrontEndOptions& option
       return "too few bursts at the predicted edges";
     case TrackingEnd::TooFewCircles:
       return print("too few circles at the predicted places: %zu (at least %d needed)", trace.circles.size(),
-                   options.grid.least_circles);
+                   options.grid.min_circles);
     case TrackingEnd::TooFewOfExpected:
       return print("too few circles at the predicted places: %zu of %d visible ones (%.0f %% needed)",
-                   trace.circles.size(), trace.expected, 100.0 * kLeastExpected);
+                   trace.circles.size(), trace.expected, 100.0 * kMinExpected);
     case TrackingEnd::Held:
       break;
   }
@@ -107,9 +107,9 @@ void addTracking(const WindowAnalysis& analysis, const FrontEndOptions& options,
 
 // Numbers of the circles without a centre, and the reasons, unless they are many.
 std::string missingText(const WindowTrace& trace, int count) {
-  constexpr int kMostNamed = 10;
+  constexpr int kMaxNamed = 10;
   const int missing = count - static_cast<int>(trace.circles.size());
-  if (missing < 1 || missing > kMostNamed) return {};
+  if (missing < 1 || missing > kMaxNamed) return {};
   std::vector<bool> found(static_cast<std::size_t>(count), false);
   for (const CircleObservation& circle : trace.circles) found[static_cast<std::size_t>(circle.circle)] = true;
   std::string text = ", without";
@@ -123,7 +123,7 @@ std::string missingText(const WindowTrace& trace, int count) {
 }
 
 // Minimum number of circles of a view.
-int leastCircles(const WindowAnalysis& analysis, const GridOptions& options) {
+int minCircles(const WindowAnalysis& analysis, const GridOptions& options) {
   int least = 0;
   while (outcomeOf(least, *analysis.scene, options) == WindowOutcome::TooFewInGrid) ++least;
   return least;
@@ -144,7 +144,7 @@ void addCentres(const WindowAnalysis& analysis, const GridOptions& options,
   if (!sigmas.empty()) text += print(", sigma %.3f px", medianOf(std::move(sigmas)));
   const bool good = windowClass(analysis.outcome) != WindowClass::Missed;
   if (analysis.outcome == WindowOutcome::TooFewInGrid)
-    text += print(" (at least %d needed)", leastCircles(analysis, options));
+    text += print(" (at least %d needed)", minCircles(analysis, options));
   text += missingText(trace, count);
   stages.push_back({"centres", good ? StageVerdict::Passed : StageVerdict::Failed, text});
 }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kHeader_px = 25.0, kFooter_px = 18.0, kTicks_px = 14.0, kSide_px = 62.0;
 constexpr double kFoundMarkHeight = 0.7;  // of the row
-constexpr double kLeastMissed_px = 4.0;   // narrower marks are easily overlooked
+constexpr double kMinMissed_px = 4.0;     // narrower marks are easily overlooked
 
 QString rateText(double events_s) {
   if (events_s >= 1e6) return QStringLiteral("%1 Mev/s").arg(1e-6 * events_s, 0, 'g', 3);
@@ -228,7 +228,7 @@ std::vector<Timeline::ColumnCounts> Timeline::countColumns() const {
     if (window->time_s - window->half_width_s > visible_end_s_) break;
     double from = xOf(window->time_s - window->half_width_s) - area.left();
     double to = xOf(endOfWindow(*window)) - area.left();
-    if (const double lacking = kLeastMissed_px - (to - from);
+    if (const double lacking = kMinMissed_px - (to - from);
         lacking > 0.0 && windowClass(window->outcome) == WindowClass::Missed) {
       from -= 0.5 * lacking;
       to += 0.5 * lacking;

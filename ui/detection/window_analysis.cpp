@@ -37,7 +37,7 @@ void findFlow(const BurstHistory& history, const WindowQuestion& question, Windo
 }  // namespace
 
 TimeSpan neededBursts_s(const WindowQuestion& question) {
-  const double fit_s = question.options.tracking.longest_fit_half_window_s;
+  const double fit_s = question.options.tracking.max_fit_half_window_s;
   const double reach_s = std::max({kSearchReach_s, question.half_width_s, fit_s});
   const BoardView* view = viewBefore(question);
   const double begin_s = question.time_s - reach_s;

@@ -23,9 +23,9 @@ struct Cell {
   int sum() const { return brighter + darker; }
 };
 
-QSize fitted(Resolution sensor_px, const QSize& most_px) {
+QSize fitted(Resolution sensor_px, const QSize& max_px) {
   return QSize(sensor_px.width_px, sensor_px.height_px)
-      .scaled(most_px, Qt::KeepAspectRatio)
+      .scaled(max_px, Qt::KeepAspectRatio)
       .expandedTo({1, 1});
 }
 
@@ -61,11 +61,11 @@ QImage painted(const std::vector<Cell>& cells, const QSize& size_px, const Surfa
 }
 
 QImage pictureOfEvents(const PictureSource& source, const PictureWish& wish, const SurfaceStyle& style,
-                       const QSize& most_px) {
+                       const QSize& max_px) {
   const std::int64_t end_ns = source.start_ns + nanosecondsFrom(wish.time_s + wish.half_width_s);
   if (!source.events || !source.resolution_px.known() || source.events->completeUntil_ns() < end_ns)
     return {};
-  const QSize size_px = fitted(source.resolution_px, most_px);
+  const QSize size_px = fitted(source.resolution_px, max_px);
   std::vector<Cell> cells(static_cast<std::size_t>(size_px.width()) *
                           static_cast<std::size_t>(size_px.height()));
   std::vector<Event> events;
@@ -84,7 +84,7 @@ QImage pictureOfEvents(const PictureSource& source, const PictureWish& wish, con
 }
 
 QImage pictureOfFrame(const PictureSource& source, const PictureWish& wish, const SurfaceStyle& style,
-                      const QSize& most_px) {
+                      const QSize& max_px) {
   if (!source.frames) return {};
   const std::int64_t time_ns = source.start_ns + nanosecondsFrom(wish.time_s);
   const auto last_ns = source.frames->lastTime_ns();
@@ -92,18 +92,18 @@ QImage pictureOfFrame(const PictureSource& source, const PictureWish& wish, cons
   try {
     const QImage whole =
         pictureOf(decodeFrame(source.frames->frame(*source.frames->nearest(time_ns)), "frame"));
-    return whole.scaled(most_px, Qt::KeepAspectRatio, Qt::SmoothTransformation);
+    return whole.scaled(max_px, Qt::KeepAspectRatio, Qt::SmoothTransformation);
   } catch (const CalibrationError&) {
-    return emptyImage({most_px.width(), most_px.height()}, style);  // the list reports that it is unreadable
+    return emptyImage({max_px.width(), max_px.height()}, style);  // the list reports that it is unreadable
   }
 }
 
 }  // namespace
 
 QImage pictureOfWindow(const PictureSource& source, const PictureWish& wish, const SurfaceStyle& style,
-                       const QSize& most_px) {
-  return source.kind == CameraKind::Frames ? pictureOfFrame(source, wish, style, most_px)
-                                           : pictureOfEvents(source, wish, style, most_px);
+                       const QSize& max_px) {
+  return source.kind == CameraKind::Frames ? pictureOfFrame(source, wish, style, max_px)
+                                           : pictureOfEvents(source, wish, style, max_px);
 }
 
 WindowPictures::WindowPictures(QObject* parent) : QObject(parent) {}

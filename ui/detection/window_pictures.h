@@ -40,13 +40,13 @@ struct PictureWish {
 // Events by number and polarity, or the nearest frame; null if they are not yet read. Throws
 // CalibrationError if they are unreadable.
 QImage pictureOfWindow(const PictureSource& source, const PictureWish& wish, const SurfaceStyle& style,
-                       const QSize& most_px);
+                       const QSize& max_px);
 
 class WindowPictures : public QObject {
   Q_OBJECT
 
  public:
-  static constexpr int kMostKept = 200;
+  static constexpr int kMaxKept = 200;
 
   explicit WindowPictures(QObject* parent = nullptr);
 
@@ -76,7 +76,7 @@ class WindowPictures : public QObject {
   QSize size_px_;
   double pixel_ratio_ = 1.0;
   std::vector<PictureWish> wishes_;
-  QCache<int, QPixmap> made_{kMostKept};
+  QCache<int, QPixmap> made_{kMaxKept};
   LatestJob job_{OutdatedWork::Dropped};  // last member: its thread uses nothing of this object
 };
 

@@ -52,8 +52,8 @@ OptionForm::OptionForm(QWidget* parent)
   layout->addWidget(nothing_);
   layout->addWidget(makeList(), 1);
   layout->addWidget(expert_);
-  constexpr int kLeast_px = 270;  // fits the widest row, one with a long unit
-  setMinimumWidth(kLeast_px);
+  constexpr int kMin_px = 270;  // fits the widest row, one with a long unit
+  setMinimumWidth(kMin_px);
 }
 
 void OptionForm::fillBar(QHBoxLayout& bar) {

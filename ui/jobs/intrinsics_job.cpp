@@ -12,11 +12,11 @@ namespace {
 
 // Shares of the time for a typical recording. The number of passes is unknown: most lenses settle in one or
 // two.
-std::vector<JobStage> lensStages(int most_passes) {
+std::vector<JobStage> lensStages(int max_passes) {
   constexpr double kFirstLook = 0.1, kFirstPass = 0.7, kNext = 0.3;
   std::vector<JobStage> stages = {{nameOf(CalibrationStage::FirstLook), kFirstLook}};
   double share = kFirstPass;
-  for (int pass = 1; pass <= most_passes; ++pass, share *= kNext)
+  for (int pass = 1; pass <= max_passes; ++pass, share *= kNext)
     stages.push_back({IntrinsicsJob::passName(pass).toStdString(), share});
   return stages;
 }
@@ -85,7 +85,7 @@ bool IntrinsicsJob::start(const Session& session, std::size_t camera) {
     PassNames names(context.progress);
     *found = find(session, camera, RunContext{names, context.stop, live.get()});
   };
-  if (!runner_.start(tr("Calibrate the camera"), lensStages(session.options.intrinsics->most_passes), job)) {
+  if (!runner_.start(tr("Calibrate the camera"), lensStages(session.options.intrinsics->max_passes), job)) {
     live_.reset();
     found_.reset();
     return false;

@@ -142,8 +142,8 @@ void RunHistory::keep(std::shared_ptr<const CalibrationRun> run, const Session& 
        [this, run, session, version, log, made_s, place = place_, has_file = has_file_]() -> Done {
          const std::filesystem::path folder = newFolder(place, made_s);
          keepRun(folder, session, run, version.toStdString(), log.toStdString(), made_s);
-         removeOldRuns(listRuns(place), kMostRuns, kMostBytes);
-         if (!has_file) removeOldRuns(allWithoutFile(), kMostRunsWithoutFile, kMostBytesWithoutFile);
+         removeOldRuns(listRuns(place), kMaxRuns, kMaxBytes);
+         if (!has_file) removeOldRuns(allWithoutFile(), kMaxRunsWithoutFile, kMaxBytesWithoutFile);
          return [this, run, folder] {
            std::erase_if(folders_, [](const auto& each) { return each.first.expired(); });
            const bool here =

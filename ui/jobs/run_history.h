@@ -24,8 +24,8 @@ class RunHistory : public QObject {
 
  public:
   // Limits for one session, and for all sessions without a file together.
-  static constexpr std::size_t kMostRuns = 20, kMostRunsWithoutFile = 60;
-  static constexpr std::uintmax_t kMostBytes = 500'000'000, kMostBytesWithoutFile = 1'000'000'000;
+  static constexpr std::size_t kMaxRuns = 20, kMaxRunsWithoutFile = 60;
+  static constexpr std::uintmax_t kMaxBytes = 500'000'000, kMaxBytesWithoutFile = 1'000'000'000;
 
   explicit RunHistory(QObject* parent = nullptr);
   ~RunHistory() override;  // completes pending writes

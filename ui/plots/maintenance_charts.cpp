@@ -133,10 +133,10 @@ void MaintenanceCharts::setMaintenance(const Maintenance& maintenance) {
 }
 
 PlotPanel* MaintenanceCharts::addPanel(const QString& title, const QString& unit) {
-  constexpr int kLeast_px = 150;
+  constexpr int kMin_px = 150;
   auto* const panel =
       new PlotPanel({.title = title, .x_label = tr("time (s)"), .y_label = unit, .time = true});
-  panel->setMinimumHeight(kLeast_px);
+  panel->setMinimumHeight(kMin_px);
   const int place = static_cast<int>(panels_.size());
   grid_->addWidget(panel, place / kColumns, place % kColumns);
   panels_.push_back(panel);

@@ -128,9 +128,9 @@ PlotChart::PlotChart(const PlotAxes& axes, QWidget* parent) : QCustomPlot(parent
   }
   setInteractions(QCP::iRangeDrag | QCP::iRangeZoom);
   axisRect()->setRangeDrag(Qt::Horizontal | Qt::Vertical);
-  constexpr int kLeftMargin_px = 62;                        // aligns charts of time below each other
-  constexpr int kLeastWidth_px = 50, kLeastHeight_px = 16;  // charts in rows are low
-  axisRect()->setMinimumSize(kLeastWidth_px, kLeastHeight_px);
+  constexpr int kLeftMargin_px = 62;                    // aligns charts of time below each other
+  constexpr int kMinWidth_px = 50, kMinHeight_px = 16;  // charts in rows are low
+  axisRect()->setMinimumSize(kMinWidth_px, kMinHeight_px);
   if (axes.time) axisRect()->setMinimumMargins({kLeftMargin_px, 15, 15, 15});
   setNoAntialiasingOnDrag(true);
   setMouseTracking(true);
@@ -148,8 +148,8 @@ PlotChart::PlotChart(const PlotAxes& axes, QWidget* parent) : QCustomPlot(parent
 
 // Limits the labels to those that fit above each other.
 void PlotChart::resizeEvent(QResizeEvent* event) {
-  constexpr int kAround_px = 56, kLabel_px = 20, kMost = 5;
-  yAxis->ticker()->setTickCount(std::clamp((height() - kAround_px) / kLabel_px, 1, kMost));
+  constexpr int kAround_px = 56, kLabel_px = 20, kMax = 5;
+  yAxis->ticker()->setTickCount(std::clamp((height() - kAround_px) / kLabel_px, 1, kMax));
   QCustomPlot::resizeEvent(event);
 }
 

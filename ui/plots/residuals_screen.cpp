@@ -31,8 +31,8 @@ using Kind = PlotPanel::SeriesKind;
 constexpr double kScatterReach = 4.5;  // initial range of the scatter in sigmas
 constexpr double kAboveAll = 1.1;      // initial threshold relative to the largest RMS: rejects nothing
 constexpr double kShareOfWindowSpacing = 0.8;  // a bar's width
-constexpr int kLeastForArrow = 10;             // circles in a cell, for a meaningful mean
-constexpr std::size_t kMostPoints = 15'000;    // limits the time of drawing; marked ones are all drawn
+constexpr int kMinForArrow = 10;               // circles in a cell, for a meaningful mean
+constexpr std::size_t kMaxPoints = 15'000;     // limits the time of drawing; marked ones are all drawn
 constexpr int kFrame_ms = 30;
 
 template <class Wanted>
@@ -254,7 +254,7 @@ void ResidualsScreen::draw() {
 
 void ResidualsScreen::drawScatter() {
   const auto all = [](const CircleResidual&) { return true; };
-  const std::size_t every = statistics_->used.size() / kMostPoints + 1;
+  const std::size_t every = statistics_->used.size() / kMaxPoints + 1;
   std::size_t next = 0;
   scatter_->setLine(scatter_series_.used,
                     points(statistics_->used, [&](const CircleResidual&) { return next++ % every == 0; }));
@@ -322,13 +322,13 @@ void ResidualsScreen::drawImagePlane() {
   for (const auto& cell : s.cells) {
     cells.values.push_back(cell.count > 0 ? cell.count : std::numeric_limits<double>::quiet_NaN());
     covered += cell.count > 0;
-    if (cell.count >= kLeastForArrow) longest_px = std::max(longest_px, cell.mean_px.norm());
+    if (cell.count >= kMinForArrow) longest_px = std::max(longest_px, cell.mean_px.norm());
   }
   const double scale =
       longest_px > 0.0 ? static_cast<double>(s.resolution_px.width_px) / s.columns / longest_px : 0.0;
   std::vector<PlotArrow> arrows;
   for (const auto& cell : s.cells) {
-    if (cell.count < kLeastForArrow) continue;
+    if (cell.count < kMinForArrow) continue;
     const Eigen::Vector2d half = 0.5 * scale * cell.mean_px, from = cell.middle_px - half,
                           to = cell.middle_px + half;
     arrows.push_back({{from.x(), from.y()}, {to.x(), to.y()}});

@@ -30,7 +30,7 @@ constexpr std::array<std::array<double, 3>, 5> kOnLight = {
     {{0.98, 0.66, 0.18}, {0.93, 0.40, 0.29}, {0.78, 0.18, 0.46}, {0.47, 0.08, 0.60}, {0.13, 0.06, 0.45}}};
 
 constexpr double kOutliers = 0.02;
-constexpr double kMostTicks = 6.0;
+constexpr double kMaxTicks = 6.0;
 
 }  // namespace
 
@@ -51,7 +51,7 @@ double scaleEnd(std::vector<double> values) {
   if (values.empty()) return 1.0;
   const auto index = static_cast<std::ptrdiff_t>((1.0 - kOutliers) * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + index, values.end());
-  const double value = values[static_cast<std::size_t>(index)], step = roundedUp(value / kMostTicks);
+  const double value = values[static_cast<std::size_t>(index)], step = roundedUp(value / kMaxTicks);
   return step * std::max(1.0, std::ceil(value / step - 1e-9));
 }
 
@@ -72,7 +72,7 @@ void paintColourBar(QPainter& painter, const QRectF& area, const ColourScale& sc
   painter.setBrush(gradient);
   painter.drawRoundedRect(bar, 3.0, 3.0);
   painter.setPen(theme().faint_text);
-  const double step = roundedUp(scale.high / kMostTicks);
+  const double step = roundedUp(scale.high / kMaxTicks);
   for (int k = 0; k * step <= scale.high * (1.0 + 1e-9); ++k) {
     const double share = k * step / scale.high;
     const QPointF at(bar.right(), bar.bottom() - share * bar.height());
@@ -135,16 +135,16 @@ QColor rawPoseColour() {
 class Box {
  public:
   void add(const Vector3d& point) {
-    least_ = empty_ ? point : least_.cwiseMin(point).eval();
-    most_ = empty_ ? point : most_.cwiseMax(point).eval();
+    min_ = empty_ ? point : min_.cwiseMin(point).eval();
+    max_ = empty_ ? point : max_.cwiseMax(point).eval();
     empty_ = false;
   }
-  Vector3d centre() const { return empty_ ? Vector3d::Zero().eval() : (0.5 * (least_ + most_)).eval(); }
-  double radius() const { return empty_ ? 0.5 : 0.5 * (most_ - least_).norm(); }
+  Vector3d centre() const { return empty_ ? Vector3d::Zero().eval() : (0.5 * (min_ + max_)).eval(); }
+  double radius() const { return empty_ ? 0.5 : 0.5 * (max_ - min_).norm(); }
 
  private:
   bool empty_ = true;
-  Vector3d least_ = Vector3d::Zero(), most_ = Vector3d::Zero();
+  Vector3d min_ = Vector3d::Zero(), max_ = Vector3d::Zero();
 };
 
 // Relative to that of events.

@@ -55,11 +55,11 @@ std::optional<double> timeUnder(const QPointF& position, const std::vector<Timed
   const auto nearest = std::min_element(distances_px.begin(), distances_px.end());
   if (nearest == distances_px.end() || *nearest > kPick_px) return std::nullopt;
   std::optional<double> time_s;
-  double least_depth_m = std::numeric_limits<double>::infinity();
+  double min_depth_m = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < points.size(); ++k) {
     const double depth_m = pose.depth_m(points[k].at_m);
-    if (distances_px[k] > *nearest + kSameDistance_px || depth_m >= least_depth_m) continue;
-    least_depth_m = depth_m;
+    if (distances_px[k] > *nearest + kSameDistance_px || depth_m >= min_depth_m) continue;
+    min_depth_m = depth_m;
     time_s = points[k].time_s;
   }
   return time_s;

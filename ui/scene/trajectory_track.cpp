@@ -15,7 +15,7 @@ namespace evical::ui {
 namespace {
 
 constexpr double kSamplesPerKnot = 4.0;  // finer than a pixel for motion by hand
-constexpr double kMostSamples = 60000.0;
+constexpr double kMaxSamples = 60000.0;
 constexpr double kStations = 25.0;      // about the number of distinguishable frustums
 constexpr double kNearestView_s = 0.1;  // at a larger distance from a view, a sample has no residual
 
@@ -109,7 +109,7 @@ TrajectoryTrack sampleTrajectory(const CalibrationState& state, std::span<const 
   if (!hasTrajectory(state)) return track;
   const VectorSpline& spline = state.imu_in_world_m;
   const double begin_s = spline.start_s, end_s = spline.endTime_s();
-  const double step_s = std::max(spline.knot_spacing_s / kSamplesPerKnot, (end_s - begin_s) / kMostSamples);
+  const double step_s = std::max(spline.knot_spacing_s / kSamplesPerKnot, (end_s - begin_s) / kMaxSamples);
   const std::vector<ViewError> errors = errorsOfViews(residuals);
   for (double t = begin_s; t <= end_s; t += step_s) {
     const VectorSample sample = evaluate(spline, t);
@@ -155,7 +155,7 @@ std::string trackCsv(const TrajectoryTrack& track) {
 namespace evical::ui {
 namespace {
 
-constexpr std::size_t kMostPoints = 12000;
+constexpr std::size_t kMaxPoints = 12000;
 
 // Newest event by pixel.
 std::vector<Event> newestByPixel(const std::vector<Event>& events, const Resolution& resolution_px) {
@@ -179,7 +179,7 @@ std::vector<FrustumEvent> onImagePlane(const std::vector<Event>& events,
                                        const std::optional<CameraIntrinsics>& intrinsics) {
   if (!intrinsics || !intrinsics->resolution_px.known()) return {};
   const std::vector<Event> newest = newestByPixel(events, intrinsics->resolution_px);
-  const std::size_t every = std::max<std::size_t>(1, (newest.size() + kMostPoints - 1) / kMostPoints);
+  const std::size_t every = std::max<std::size_t>(1, (newest.size() + kMaxPoints - 1) / kMaxPoints);
   std::vector<FrustumEvent> points;
   for (std::size_t k = 0; k < newest.size(); k += every)
     points.push_back({rayAtUnitDepth(*intrinsics, {newest[k].x_px, newest[k].y_px}), newest[k].brighter});

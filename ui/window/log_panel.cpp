@@ -16,8 +16,8 @@
 namespace evical::ui {
 namespace {
 
-constexpr std::size_t kMostLines = 5000;
-constexpr int kLeastText_px = 40;  // two lines: the dock must not enlarge the window beyond small displays
+constexpr std::size_t kMaxLines = 5000;
+constexpr int kMinText_px = 40;  // two lines: the dock must not enlarge the window beyond small displays
 
 QColor colourOf(LogLevel level) {
   switch (level) {
@@ -50,8 +50,8 @@ LogPanel::LogPanel(QWidget* parent)
   search_->setClearButtonEnabled(true);
   search_->setToolTip(tr("Show only messages that contain this text"));
   text_->setReadOnly(true);
-  text_->setMinimumHeight(kLeastText_px);
-  text_->setMaximumBlockCount(static_cast<int>(kMostLines));
+  text_->setMinimumHeight(kMinText_px);
+  text_->setMaximumBlockCount(static_cast<int>(kMaxLines));
   text_->setPlaceholderText(tr("Messages of calibrations are shown here"));
   auto* const copy = new QToolButton(this);
   copy->setIcon(icon("copy"));
@@ -77,7 +77,7 @@ void LogPanel::addHeading(const QString& title) {
 
 void LogPanel::add(const LogLine& line) {
   lines_.push_back(line);
-  if (lines_.size() > kMostLines) lines_.pop_front();
+  if (lines_.size() > kMaxLines) lines_.pop_front();
   if (isShown(line)) append(line);
 }
 

@@ -12,14 +12,14 @@
 namespace evical::ui {
 namespace {
 
-constexpr qsizetype kMostRecent = 10;
+constexpr qsizetype kMaxRecent = 10;
 constexpr std::array kVerdicts = {CalibrationStatus::Ok, CalibrationStatus::Doubtful,
                                   CalibrationStatus::Failed};
 
 void store(const QList<RecentFile>& files) {
   QSettings settings;
   settings.beginWriteArray("recent");
-  for (qsizetype i = 0; i < std::min(files.size(), kMostRecent); ++i) {
+  for (qsizetype i = 0; i < std::min(files.size(), kMaxRecent); ++i) {
     settings.setArrayIndex(static_cast<int>(i));
     settings.setValue("path", files[i].path);
     settings.setValue("opened", files[i].opened);
@@ -33,7 +33,7 @@ void store(const QList<RecentFile>& files) {
 QList<RecentFile> recentFiles() {
   QSettings settings;
   QList<RecentFile> files;
-  const int count = std::min(settings.beginReadArray("recent"), static_cast<int>(kMostRecent));
+  const int count = std::min(settings.beginReadArray("recent"), static_cast<int>(kMaxRecent));
   for (int i = 0; i < count; ++i) {
     settings.setArrayIndex(i);
     RecentFile file{settings.value("path").toString(), settings.value("opened").toDateTime(), {}};

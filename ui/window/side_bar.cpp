@@ -16,7 +16,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kSideBar_px = 236, kIcon_px = 20, kPage_px = 31, kHeading_px = 30, kReason_px = 22;
-constexpr int kLeastPages_px = 190, kLeastSteps_px = 70;
+constexpr int kMinPages_px = 190, kMinSteps_px = 70;
 constexpr int kPageRole = Qt::UserRole;  // headings have none
 const char* const kFoldedKey = "window/more_folded";
 
@@ -25,7 +25,7 @@ class PageList final : public QListWidget {
  public:
   using QListWidget::QListWidget;
   QSize sizeHint() const override { return {QListWidget::sizeHint().width(), maximumHeight()}; }
-  QSize minimumSizeHint() const override { return {0, kLeastPages_px}; }
+  QSize minimumSizeHint() const override { return {0, kMinPages_px}; }
 };
 
 }  // namespace
@@ -40,7 +40,7 @@ SideBar::SideBar(const std::vector<PageEntry>& pages, QWidget* below, QWidget* p
   list_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   list_->setVerticalScrollMode(QAbstractItemView::ScrollPerPixel);
   list_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);
-  below->setMinimumHeight(kLeastSteps_px);
+  below->setMinimumHeight(kMinSteps_px);
   addPages();
   auto* const layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);

@@ -94,11 +94,11 @@ class ChangeTest {
   // For each stretch, the number of earlier ones with information on these numbers. Others have a little,
   // too, through the trajectory.
   std::vector<std::size_t> tellingBefore(const Candidate& candidate) const {
-    constexpr double kLeastShare = 0.05;  // of the mean
+    constexpr double kMinShare = 0.05;  // of the mean
     const Eigen::Index first = candidate.columns.front();
     double sum = 0.0;
     for (const Eigen::MatrixXd& share : information_.information_by_stretch) sum += share(first, first);
-    const double least = kLeastShare * sum / static_cast<double>(information_.information_by_stretch.size());
+    const double least = kMinShare * sum / static_cast<double>(information_.information_by_stretch.size());
     std::vector<std::size_t> before = {0};
     for (const Eigen::MatrixXd& share : information_.information_by_stretch)
       before.push_back(before.back() + (share(first, first) > least ? 1 : 0));
@@ -108,12 +108,12 @@ class ChangeTest {
   // Moments at which a step explains most. Either part needs its share of the sensor's measurements: one view
   // before a gap is not enough.
   std::vector<Step> likelySteps(const Candidate& candidate) const {
-    constexpr double kLeastPart_s = 1.5;  // shorter parts have little information
+    constexpr double kMinPart_s = 1.5;  // shorter parts have little information
     constexpr std::size_t kTried = 30;
     const std::size_t count = information_.scores.size();
     std::vector<Step> steps;
     if (count == 0) return steps;
-    const auto least = static_cast<std::size_t>(std::ceil(kLeastPart_s / information_.stretch_s));
+    const auto least = static_cast<std::size_t>(std::ceil(kMinPart_s / information_.stretch_s));
     const std::vector<std::size_t> telling = tellingBefore(candidate);
     const auto enough = [&](std::size_t stretches) { return stretches * count >= telling.back() * least; };
     Part part{count, Eigen::VectorXd::Zero(gradient_.size()),
@@ -166,11 +166,11 @@ class ChangeTest {
   // By information or by the scatter of the remaining scores, whichever is less certain. If the remaining
   // scores exceed the noise, the step must be significant relative to them, too.
   static double sigmasOf(const Step& step, const std::vector<Eigen::VectorXd>& left) {
-    constexpr double kLeastScatter = 1e-9;
+    constexpr double kMinScatter = 1e-9;
     const Eigen::MatrixXd scatter = scoreScatter(left, step.change.size());
     const Eigen::VectorXd root = step.information.diagonal().cwiseSqrt();
     Eigen::MatrixXd scaled = root.cwiseInverse().asDiagonal() * scatter * root.cwiseInverse().asDiagonal();
-    scaled.diagonal().array() += kLeastScatter;
+    scaled.diagonal().array() += kMinScatter;
     const Eigen::VectorXd pull = (step.information * step.change).cwiseQuotient(root);
     const double sigmas2 = std::min(step.explains, pull.dot(scaled.ldlt().solve(pull)));
     const auto by_chance = static_cast<double>(step.change.size());

@@ -15,7 +15,7 @@ constexpr double kNoiseFactor = 10.0;
 // Delays are determined from the trajectory's jerk, whose errors come from the accelerometer: white, so that
 // their factor is near 1.
 constexpr double kDelayNoiseFactor = 3.0;
-constexpr double kLeastShare = 1e-12;  // of the strongest direction, for the decomposition only
+constexpr double kMinShare = 1e-12;  // of the strongest direction, for the decomposition only
 
 // Information added by noise, times its factor.
 Eigen::MatrixXd feigned(const ProjectedInformation& information) {
@@ -39,7 +39,7 @@ ProjectedInformation withoutNoise(ProjectedInformation information) {
   const Eigen::VectorXd inverse_scale = scale.cwiseInverse();
   const SymmetricEigen whole =
       symmetricEigen(inverse_scale.asDiagonal() * measured * inverse_scale.asDiagonal());
-  const Eigen::VectorXd root = whole.values.cwiseMax(kLeastShare * whole.values.maxCoeff()).cwiseSqrt();
+  const Eigen::VectorXd root = whole.values.cwiseMax(kMinShare * whole.values.maxCoeff()).cwiseSqrt();
   const Eigen::MatrixXd from_sigmas = scale.asDiagonal() * whole.vectors * root.asDiagonal();
   const Eigen::MatrixXd to_sigmas =
       root.cwiseInverse().asDiagonal() * whole.vectors.transpose() * inverse_scale.asDiagonal();

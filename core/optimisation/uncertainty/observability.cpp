@@ -121,8 +121,8 @@ const char* nameOf(QuantityNeed need) {
 // "1.04": as many digits as show that the sigma is larger than needed.
 std::string beyondNeed(double sigma, double needed) {
   std::string text;
-  constexpr int kFewest = 2, kMost = 6;
-  for (int digits = kFewest; digits <= kMost; ++digits) {
+  constexpr int kFewest = 2, kMax = 6;
+  for (int digits = kFewest; digits <= kMax; ++digits) {
     text = fmt::format("{:.{}g}", sigma, digits);
     if (!(std::stod(text) <= needed)) break;
   }

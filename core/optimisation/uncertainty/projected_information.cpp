@@ -432,10 +432,10 @@ ProjectedInformation Projection::run() {
 }  // namespace
 
 double MeasurementGroup::variance() const {
-  constexpr double kLeastFree =
+  constexpr double kMinFree =
       0.05;  // below, splines follow the group almost completely, and its noise is not observable
   const double free = residuals - absorbed;
-  return kind != SensorKind::Prior && free > kLeastFree * residuals ? squared_residuals / free : 1.0;
+  return kind != SensorKind::Prior && free > kMinFree * residuals ? squared_residuals / free : 1.0;
 }
 
 ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s, int threads,

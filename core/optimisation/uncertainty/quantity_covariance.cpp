@@ -17,10 +17,10 @@ namespace {
 // A comparable size of focal lengths and principal point, the first four intrinsics.
 constexpr double kPixelUnit = 0.1;
 
-constexpr double kLeastVariance = 1e-300;
+constexpr double kMinVariance = 1e-300;
 
 // Below this information in the units above a direction counts as open, and its sigma is 1e4 units.
-constexpr double kLeastInformation = 1e-8;
+constexpr double kMinInformation = 1e-8;
 
 // Inverse of the information, also if it is singular: directions without information get the least that is allowed.
 // `open` is this addition.
@@ -30,7 +30,7 @@ struct SafeInverse {
 SafeInverse safeInverse(const Eigen::MatrixXd& information, const Eigen::VectorXd& units) {
   const SymmetricEigen eigen = symmetricEigen(units.asDiagonal() * information * units.asDiagonal());
   const Eigen::MatrixXd& v = eigen.vectors;
-  const Eigen::VectorXd known = eigen.values.cwiseMax(kLeastInformation);
+  const Eigen::VectorXd known = eigen.values.cwiseMax(kMinInformation);
   const Eigen::VectorXd missing = known - eigen.values;
   const Eigen::VectorXd per_unit = units.cwiseInverse();
   return {
@@ -104,10 +104,9 @@ Eigen::VectorXd growthOf(const ProjectedInformation& information, const Eigen::M
                                   std::max(1.0, static_cast<double>(information.scores.size())));
   Eigen::VectorXd growth(white.rows());
   for (Eigen::Index i = 0; i < growth.size(); ++i) {
-    const double variance = std::max(white(i, i), kLeastVariance);
-    const double scale =
-        (variance - known[i]) / std::max(stated[i], kLeastVariance);  // of residuals, squared
-    const double ratio = left[i] / std::max(scale * white_left[i], kLeastVariance);
+    const double variance = std::max(white(i, i), kMinVariance);
+    const double scale = (variance - known[i]) / std::max(stated[i], kMinVariance);  // of residuals, squared
+    const double ratio = left[i] / std::max(scale * white_left[i], kMinVariance);
     const double certain = std::clamp((ratio - 1.0) / doubtless, 0.0, 1.0);
     growth[i] = std::sqrt(1.0 + certain * std::max(0.0, whole[i] / variance - 1.0));
   }
@@ -128,7 +127,7 @@ Eigen::VectorXd varianceOfClusters(const ProjectedInformation& information, cons
       const Eigen::VectorXd seen = congruence(inverse, each.scatter).diagonal();
       const double doubtless = kCertain_sigmas * std::sqrt(2.0 / each.clusters);
       for (Eigen::Index i = 0; i < sum.size(); ++i) {
-        const double ratio = seen[i] / std::max(white[i], kLeastVariance);
+        const double ratio = seen[i] / std::max(white[i], kMinVariance);
         const double certain = std::clamp((ratio - 1.0) / doubtless, 0.0, 1.0);
         largest[i] = std::max(largest[i], certain * (seen[i] - white[i]));
       }
@@ -184,8 +183,7 @@ QuantityCovariance quantityCovariance(const ProjectedInformation& information,
   Eigen::VectorXd growth = growthOf(information, covariance, safe, given, report_from_tangent);
   const Eigen::VectorXd clusters = varianceOfClusters(information, inverse);
   for (Eigen::Index i = 0; i < size; ++i)
-    growth[i] =
-        std::max(growth[i], std::sqrt(1.0 + clusters[i] / std::max(covariance(i, i), kLeastVariance)));
+    growth[i] = std::max(growth[i], std::sqrt(1.0 + clusters[i] / std::max(covariance(i, i), kMinVariance)));
   covariance = (growth.asDiagonal() * covariance * growth.asDiagonal()).eval();
   return {information.quantities, information.first_column, covariance,
           congruence(report_from_tangent, safe.inverse)};

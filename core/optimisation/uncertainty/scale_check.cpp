@@ -28,12 +28,12 @@ std::optional<Eigen::Index> gravityNormColumn(const QuantityCovariance& covarian
 // Prior of a number, and its estimate.
 struct Weighed {
   double prior_sigma, found, found_sigma;  // the prior's mean is 0
-  double largest_share;                    // of the prior's sigma, with which the prior is tested
+  double max_share;                        // of the prior's sigma, with which the prior is tested
 
   // Disagreement between the recording and the prior; 0 if the recording adds little to the prior, since the estimate
   // then says nothing about the prior's error.
   double sigmas() const {
-    if (found_sigma > largest_share * prior_sigma) return 0.0;
+    if (found_sigma > max_share * prior_sigma) return 0.0;
     return found / std::sqrt(prior_sigma * prior_sigma - found_sigma * found_sigma);
   }
 };
@@ -54,8 +54,7 @@ struct Combination {
   }
   Weighed weighed(const QuantityCovariance& covariance, const OptimisationOptions& options) const {
     return {std::sqrt(prior_variance), found,
-            std::sqrt(std::max(0.0, weights.dot(covariance.covariance * weights))),
-            options.largest_scale_share};
+            std::sqrt(std::max(0.0, weights.dot(covariance.covariance * weights))), options.max_scale_share};
   }
 };
 

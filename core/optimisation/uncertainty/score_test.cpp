@@ -48,13 +48,13 @@ class Steps {
         covariance_(credible.total) {}
 
   Step of(std::size_t quantity) const {
-    constexpr double kLeastSigma = 1e-12;
+    constexpr double kMinSigma = 1e-12;
     const Eigen::Index first = information_.first_column[quantity],
                        size = information_.first_column[quantity + 1] - first;
     Step step{step_.segment(first, size)};
     for (Eigen::Index k = 0; k < size; ++k)
-      step.sigmas = std::max(step.sigmas,
-                             std::abs(step.change[k]) / std::max(covariance_.sigma(first + k), kLeastSigma));
+      step.sigmas =
+          std::max(step.sigmas, std::abs(step.change[k]) / std::max(covariance_.sigma(first + k), kMinSigma));
     return step;
   }
 

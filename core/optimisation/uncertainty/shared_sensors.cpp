@@ -74,8 +74,8 @@ class SensorTest {
       Eigen::VectorXd direction = Eigen::VectorXd::Unit(step_.size(), first + k);
       if (partner) direction[information_.first_column[*partner] + k] = -1.0;
       const double variance = direction.dot(covariance_.times(direction));
-      constexpr double kLeastVariance = 1e-24;
-      sigmas = std::max(sigmas, std::abs(difference[k]) / std::sqrt(std::max(variance, kLeastVariance)));
+      constexpr double kMinVariance = 1e-24;
+      sigmas = std::max(sigmas, std::abs(difference[k]) / std::sqrt(std::max(variance, kMinVariance)));
     }
     if (counts(quantity, difference, sigmas, apart)) apart.sigmas = std::max(apart.sigmas, sigmas);
   }

@@ -19,7 +19,7 @@
 namespace evical {
 namespace {
 
-constexpr int kMostThreads = 256, kMostAtOnce = 1024, kMostMemory_mb = 1 << 24;
+constexpr int kMaxThreads = 256, kMaxAtOnce = 1024, kMaxMemory_mb = 1 << 24;
 
 std::filesystem::path beside(const YamlNode& node, const std::filesystem::path& folder) {
   const std::string text = node.anyText();
@@ -111,12 +111,11 @@ Batch readBatch(const std::filesystem::path& file) {
   std::error_code ignored;
   Batch batch;
   batch.file = std::filesystem::absolute(file, ignored).lexically_normal();
-  if (const auto node = root.find("threads")) batch.threads = node->integer(1, kMostThreads);
+  if (const auto node = root.find("threads")) batch.threads = node->integer(1, kMaxThreads);
   const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   batch.at_once = std::max(1, processors / batch.threads);
-  if (const auto node = root.find("at_once")) batch.at_once = node->integer(1, kMostAtOnce);
-  if (const auto node = root.find("memory_limit_mb"))
-    batch.memory_limit_mb = node->integer(1, kMostMemory_mb);
+  if (const auto node = root.find("at_once")) batch.at_once = node->integer(1, kMaxAtOnce);
+  if (const auto node = root.find("memory_limit_mb")) batch.memory_limit_mb = node->integer(1, kMaxMemory_mb);
   const YamlNode list = root["jobs"];
   const JobReader reader(root, batch.file.parent_path());
   for (const YamlNode& item : list.items()) batch.jobs.push_back(reader.read(item));

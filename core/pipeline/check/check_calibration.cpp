@@ -32,8 +32,8 @@ Session freeSession(const CheckInput& input) {
 struct BoardSeen {
   std::size_t windows = 0, with_board = 0;
 
-  bool isRare(double least_share) const {
-    return windows > 0 && static_cast<double>(with_board) < least_share * static_cast<double>(windows);
+  bool isRare(double min_share) const {
+    return windows > 0 && static_cast<double>(with_board) < min_share * static_cast<double>(windows);
   }
 };
 
@@ -170,7 +170,7 @@ CheckRun checkCalibration(const CheckInput& input, const RunContext& context) {
   CheckRun checked =
       Check(input, context).run([&](const Session& session) { return runCalibration(session, context); });
   const BoardSeen seen = boardSeen(checked.run ? checked.run->pass : checked.pass);
-  if (input.session.board_blinks || !seen.isRare(input.session.options.check->least_board_share))
+  if (input.session.board_blinks || !seen.isRare(input.session.options.check->min_board_share))
     return checked;
   CheckRun without = checkWithoutBoard(input, context);
   without.check.notes.push_back(fmt::format(

@@ -109,7 +109,7 @@ std::optional<Session> storedSession(const std::filesystem::path& result) {
 template <class Rows, class State, class Uncertainty, class Prior>
 void weigh(const Rows& rows, const State& was, const Uncertainty& uncertainty, bool reference,
            const CheckOptions& options, Prior& prior) {
-  constexpr double kLeast = 1e-12;  // a sigma of 0 would fix the value
+  constexpr double kMin = 1e-12;  // a sigma of 0 would fix the value
   forEachPriorQuantity(rows, [&](const auto& row) {
     const std::optional<double> stability = stabilityOf(row.info, options);
     const Eigen::VectorXd sigmas = quantityNumbers(row.sigma(uncertainty));
@@ -117,7 +117,7 @@ void weigh(const Rows& rows, const State& was, const Uncertainty& uncertainty, b
     if (!stability || (reference && row.info.relative) || isGiven(known) || !(sigmas.array() > 0.0).any())
       return;
     known = {row.value(was)};
-    Eigen::VectorXd both = (sigmas.array().square() + *stability * *stability).sqrt().max(kLeast);
+    Eigen::VectorXd both = (sigmas.array().square() + *stability * *stability).sqrt().max(kMin);
     if (both.size() == 1) both[0] = std::hypot(sigmas[0], *stability);
     setQuantityNumbers(both, known->sigma.emplace());
   });

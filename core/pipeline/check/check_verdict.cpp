@@ -32,17 +32,17 @@ std::string openText(const Finding& finding) {
 void testQuantities(const ComparedQuantities& compared, const CheckOptions& options,
                     CalibrationCheck& check) {
   const GroupTestResults tests = testSingleChanges(compared.change, compared.groups, options.false_alarms);
-  std::size_t shown = 0, most_changed = 0;
+  std::size_t shown = 0, max_changed = 0;
   std::vector<std::string> names(compared.groups.size());
   for (std::size_t g = 0; g < compared.groups.size(); ++g) {
     if (!compared.groups[g].tested) continue;
     const ComparedQuantity& quantity = compared.quantities[shown++];
     check.findings.push_back(testedQuantity(quantity, tests.groups[g], compared.groups[g]));
     names[g] = wordsOf(quantity.shown);
-    if (g == tests.most_changed) most_changed = check.findings.size() - 1;
+    if (g == tests.max_changed) max_changed = check.findings.size() - 1;
   }
   for (const std::size_t g : tests.alternatives)
-    check.findings.at(most_changed).alternatives.push_back(names[g]);
+    check.findings.at(max_changed).alternatives.push_back(names[g]);
 }
 
 void judgeFindings(CalibrationCheck& check) {

@@ -302,9 +302,9 @@ class BoardlessCheck {
       delay.value = "0";
       CheckOptions options = *input_.session.options.check;
       options.stability_rotation_deg =
-          std::max(options.stability_rotation_deg, options.without_board_least_rotation_deg);
+          std::max(options.stability_rotation_deg, options.without_board_min_rotation_deg);
       options.stability_time_offset_ms =
-          std::max(options.stability_time_offset_ms, options.without_board_least_time_offset_ms);
+          std::max(options.stability_time_offset_ms, options.without_board_min_time_offset_ms);
       options.matters_rotation_deg = options.without_board_rotation_deg;
       options.matters_time_offset_ms = options.without_board_time_offset_ms;
       testQuantities(compareQuantities({input_.before, now_, false}, options), options, out_.check);

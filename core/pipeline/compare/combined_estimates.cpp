@@ -16,8 +16,8 @@ using Indices = std::vector<Eigen::Index>;
 constexpr double kRounding = 1e-10;
 
 Eigen::VectorXd scaleOf(const Eigen::MatrixXd& symmetric) {
-  constexpr double kLeast = 1e-300;
-  return symmetric.diagonal().cwiseMax(kLeast).cwiseSqrt();
+  constexpr double kMin = 1e-300;
+  return symmetric.diagonal().cwiseMax(kMin).cwiseSqrt();
 }
 
 // Inverse of a matrix that may be singular up to rounding.
@@ -106,12 +106,12 @@ EstimateDistance EstimateCombination::distance(std::size_t one, std::span<const 
   const Eigen::MatrixXd covariance =
       congruence(of_one, measured_[one].scatter) + congruence(of_rest, rest.scatter) +
       congruence(of_one - of_rest, known_.information) + part(known_.moving, both);
-  constexpr double kLeast = 1e-7;  // smaller eigenvalues: directions with common priors only
+  constexpr double kMin = 1e-7;  // smaller eigenvalues: directions with common priors only
   const Eigen::VectorXd scale = scaleOf(covariance).cwiseInverse();
   const SymmetricEigen eigen = symmetricEigen(scale.asDiagonal() * covariance * scale.asDiagonal());
   EstimateDistance distance;
   for (Eigen::Index i = 0; i < eigen.values.size(); ++i) {
-    if (eigen.values[i] < kLeast) continue;
+    if (eigen.values[i] < kMin) continue;
     const double along = eigen.vectors.col(i).dot(scale.cwiseProduct(difference));
     distance.chi_square += along * along / eigen.values[i];
     ++distance.freedom;

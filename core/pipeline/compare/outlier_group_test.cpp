@@ -130,7 +130,7 @@ GroupTestResults testSingleChanges(const EstimatedChange& estimated, std::span<c
   });
   for (const FoundChange& each : found) tests.groups[each.block].changed = true;
   if (found.empty()) return tests;
-  tests.most_changed = found.front().block;
+  tests.max_changed = found.front().block;
   for (const std::size_t g : found.front().alternatives)
     if (!tests.groups[g].changed) tests.alternatives.push_back(g);
   return tests;

@@ -39,7 +39,7 @@ struct GroupTestResult {
 
 struct GroupTestResults {
   std::vector<GroupTestResult> groups;
-  std::size_t most_changed = 0;           // valid if any group has changed
+  std::size_t max_changed = 0;            // valid if any group has changed
   std::vector<std::size_t> alternatives;  // groups that explain the recording equally well
 };
 

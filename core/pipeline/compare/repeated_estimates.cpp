@@ -83,10 +83,10 @@ FollowingEstimate followingEstimate(const UncertaintyReport& report, const Follo
 }
 
 void setReport(const FollowingEstimate& estimate, UncertaintyReport& report) {
-  constexpr double kLeast = 1e-300;
+  constexpr double kMin = 1e-300;
   report.columns = estimate.columns;
   report.standard_deviations = estimate.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::VectorXd inverse = report.standard_deviations.cwiseMax(kLeast).cwiseInverse();
+  const Eigen::VectorXd inverse = report.standard_deviations.cwiseMax(kMin).cwiseInverse();
   report.correlation = inverse.asDiagonal() * estimate.covariance * inverse.asDiagonal();
   report.correlation.diagonal().setOnes();
 }

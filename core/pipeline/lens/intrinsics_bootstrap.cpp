@@ -18,9 +18,9 @@
 namespace evical {
 namespace {
 
-constexpr double kSearched = 0.4;               // share of a slice before the search: bursts on both sides
-constexpr int kSolveEvery = 3;                  // slices, once there is a camera model
-constexpr std::size_t kMostEvents = 8'000'000;  // in a slice
+constexpr double kSearched = 0.4;              // share of a slice before the search: bursts on both sides
+constexpr int kSolveEvery = 3;                 // slices, once there is a camera model
+constexpr std::size_t kMaxEvents = 8'000'000;  // in a slice
 
 // Generic equidistant lenses of one parameter: wide, which suits most boards; no distortion; fisheye; and one
 // still wider if a wide model is requested.
@@ -100,7 +100,7 @@ class IntrinsicsBootstrap {
     }
     const bool outside = event.x_px >= resolution_px_.width_px || event.y_px >= resolution_px_.height_px;
     const bool late = !slice_.empty() && event.time_ns < slice_.back().time_ns;
-    if (event.time_ns < slice_begin_ns_ || outside || late || slice_.size() >= kMostEvents) return;
+    if (event.time_ns < slice_begin_ns_ || outside || late || slice_.size() >= kMaxEvents) return;
     slice_.push_back(event);
   }
 
@@ -156,8 +156,8 @@ class IntrinsicsBootstrap {
   }
 
   void solve() {
-    constexpr int kLeastSlices = 3;  // views of one slice are similar
-    if (slices_ < kLeastSlices || solved_views_ == views_.size()) return;
+    constexpr int kMinSlices = 3;  // views of one slice are similar
+    if (slices_ < kMinSlices || solved_views_ == views_.size()) return;
     solved_views_ = views_.size();
     auto estimate = roughCamera(views_, session_.board, estimate_ ? estimate_->intrinsics : lenses_.front(),
                                 options_, context_);

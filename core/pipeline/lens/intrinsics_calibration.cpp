@@ -128,7 +128,7 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
   lens.detection_intrinsics = bootstrapIntrinsics(alone, context);
   IntrinsicsRun run;
   std::optional<CameraIntrinsics> start;
-  for (int pass = 1; pass <= alone.options.intrinsics->most_passes; ++pass) {
+  for (int pass = 1; pass <= alone.options.intrinsics->max_passes; ++pass) {
     context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
     run.pass = readAndDetect(alone, {lens}, context);
     if (run.pass.cameras.front().views.empty())

@@ -341,9 +341,9 @@ void ImuLogs::release(bool all) {
 }
 
 void ImuLogs::putInOrder(std::size_t imu, Block& block, bool all) {
-  constexpr std::size_t kMost = 500'000;
+  constexpr std::size_t kMax = 500'000;
   if (block.waiting.empty()) return;
-  const std::size_t count = all || block.waiting.size() > kMost ? block.waiting.size() : cutOf(block.waiting);
+  const std::size_t count = all || block.waiting.size() > kMax ? block.waiting.size() : cutOf(block.waiting);
   const auto end = block.waiting.begin() + static_cast<std::ptrdiff_t>(count);
   block.ready.assign(block.waiting.begin(), end);
   block.taken = 0;

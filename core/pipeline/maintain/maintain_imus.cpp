@@ -33,13 +33,13 @@ constexpr double kWorthAdvice = 4.0;
 
 // Sample times of one sensor.
 struct SampleTimes {
-  double first_s = 0.0, last_s = 0.0, longest_gap_s = 0.0, longest_gap_at_s = 0.0;
+  double first_s = 0.0, last_s = 0.0, max_gap_s = 0.0, longest_gap_at_s = 0.0;
   std::uint64_t samples = 0;
 
   void add(double time_s) {
     if (samples == 0) first_s = last_s = time_s;
-    if (time_s - last_s > longest_gap_s) {
-      longest_gap_s = time_s - last_s;
+    if (time_s - last_s > max_gap_s) {
+      max_gap_s = time_s - last_s;
       longest_gap_at_s = last_s;
     }
     ++samples;
@@ -60,9 +60,7 @@ struct ImuTimes {
   }
   double from_s() const { return std::min(rates.first_s, forces.first_s); }
   double to_s() const { return std::max(rates.last_s, forces.last_s); }
-  const SampleTimes& withLongestGap() const {
-    return forces.longest_gap_s > rates.longest_gap_s ? forces : rates;
-  }
+  const SampleTimes& withLongestGap() const { return forces.max_gap_s > rates.max_gap_s ? forces : rates; }
 };
 
 // Data of one IMU over the whole log.
@@ -287,11 +285,11 @@ void Maintainer::describe() {
     imu.to_s = times.to_s();
     imu.rate_hz = times.rates.rate_hz();
     maintenance_.duration_s = std::max(maintenance_.duration_s, imu.to_s);
-    if (gaps.longest_gap_s > input_.options->gap_s)
+    if (gaps.max_gap_s > input_.options->gap_s)
       maintenance_.notes.push_back(
           fmt::format("{}: samples are missing, for {:.2f} s at {:.2f} s and possibly elsewhere; windows "
                       "with gaps are excluded",
-                      imu.name, gaps.longest_gap_s, gaps.longest_gap_at_s));
+                      imu.name, gaps.max_gap_s, gaps.longest_gap_at_s));
   }
 }
 
@@ -320,7 +318,7 @@ void Maintainer::addStops(double false_alarms) {
     MaintainedImu& imu = maintenance_.imus[k];
     if (found.stops.empty()) {
       maintenance_.notes.push_back(
-          fmt::format("{}: it is never at rest for {:g} s", imu.name, input_.options->shortest_stop_s));
+          fmt::format("{}: it is never at rest for {:g} s", imu.name, input_.options->min_stop_s));
       continue;
     }
     const MaintainedImu from_stops = maintainedImu(found);

@@ -14,7 +14,7 @@
 namespace evical {
 namespace {
 
-constexpr double kLeastWhole = 0.05;  // of the views
+constexpr double kMinWhole = 0.05;  // of the views
 
 struct AxisCheck {
   const char* line;  // "row" or "column"
@@ -33,9 +33,9 @@ std::vector<bool> circlesSeen(const BoardObservations& observations, const Board
 // Counts the views that show both outermost lines, of rows or of columns. A board smaller than the session's
 // never has such a view. A board of the correct size has some, even if the read-out loses many bursts of
 // events.
-int wholeViews(const BoardObservations& observations, const Board& board, bool rows, double least_line) {
+int wholeViews(const BoardObservations& observations, const Board& board, bool rows, double min_line) {
   const int lines = rows ? board.rows : board.cols, in_line = rows ? board.cols : board.rows;
-  const double least = std::max(2.0, least_line * in_line);
+  const double least = std::max(2.0, min_line * in_line);
   return static_cast<int>(
       std::count_if(observations.views.begin(), observations.views.end(), [&](const BoardView& view) {
         int first = 0, last = 0;
@@ -49,7 +49,7 @@ int wholeViews(const BoardObservations& observations, const Board& board, bool r
 }
 
 bool contradicted(int against, int looked_at, const ExtentOptions& options) {
-  return looked_at >= options.least_views && against > options.largest_share * looked_at;
+  return looked_at >= options.min_views && against > options.max_share * looked_at;
 }
 
 std::string beyondText(const AxisCheck& axis) {
@@ -126,10 +126,10 @@ void checkBoardSeen(const BoardObservations& observations, const Board& board,
 void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options) {
   if (observations.kind != CameraKind::Events) return;  // only their lattice can be misidentified
   const std::vector<bool> seen = circlesSeen(observations, board);
-  const double least_whole =
-      std::max<double>(options.least_views, kLeastWhole * static_cast<double>(observations.views.size()));
+  const double min_whole =
+      std::max<double>(options.min_views, kMinWhole * static_cast<double>(observations.views.size()));
   const auto isWhole = [&](bool of_rows) {
-    return wholeViews(observations, board, of_rows, options.least_line) >= least_whole;
+    return wholeViews(observations, board, of_rows, options.min_line) >= min_whole;
   };
   AxisCheck rows{"row", observations.extent.rows, std::vector<bool>(static_cast<std::size_t>(board.rows)),
                  isWhole(true)};

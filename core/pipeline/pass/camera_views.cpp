@@ -173,9 +173,9 @@ bool PointViews::belongs(const MeasuredPoint& point) {
 
 // A few invalid points are errors of the other program; many are of another board or another camera.
 void PointViews::checkShare() const {
-  constexpr std::uint64_t kEnough = 200, kMostShare = 20;
+  constexpr std::uint64_t kEnough = 200, kMaxShare = 20;
   if (seen_ < kEnough) return;
-  if (kMostShare * unknown_ > seen_)
+  if (kMaxShare * unknown_ > seen_)
     throw badInput(
         stream_,
         fmt::format(
@@ -185,7 +185,7 @@ void PointViews::checkShare() const {
             ? "Check type, rows and columns of the board. Points are counted row by row; an AprilGrid has "
               "four per tag, from the bottom left one"
             : "Give all points of the board in board.points_m, with the same indices as the camera's points");
-  if (kMostShare * outside_ > seen_)
+  if (kMaxShare * outside_ > seen_)
     throw badInput(stream_,
                    fmt::format("{} of {} points are outside {} x {} px", outside_, seen_,
                                resolution_px_.width_px, resolution_px_.height_px),
@@ -219,16 +219,16 @@ void PointViews::consume(const CameraBatch& batch) {
   seen.time_s = secondsSince(start_ns_, batch.points.front().time_ns);
   seen.points = pointsOf(batch);
   checkShare();
-  constexpr int kLeastPoints = 4;  // of a pose
+  constexpr int kMinPoints = 4;  // of a pose
   WindowReport window;
   window.time_s = seen.time_s;
   window.candidates = static_cast<int>(batch.points.size());
   window.circles = static_cast<int>(seen.points.size());
-  window.outcome = window.circles < kLeastPoints           ? WindowOutcome::TooFewCircles
+  window.outcome = window.circles < kMinPoints             ? WindowOutcome::TooFewCircles
                    : window.circles == board_.pointCount() ? WindowOutcome::Complete
                                                            : WindowOutcome::Partial;
   so_far_.windows.push_back(window);
-  if (window.circles >= kLeastPoints) frames_.push_back(std::move(seen));
+  if (window.circles >= kMinPoints) frames_.push_back(std::move(seen));
 }
 
 BoardObservations PointViews::finish(std::vector<RecordingFault>& faults) {

@@ -165,9 +165,9 @@ YamlNode checkedCamera(const YamlNode& detections, const SessionCamera& camera) 
 Resolution checkedResolution(const YamlNode& map, const SessionCamera& camera) {
   const YamlNode node = map["resolution_px"];
   const std::vector<YamlNode> items = node.items();
-  constexpr int kMost = 1'000'000;
+  constexpr int kMax = 1'000'000;
   if (items.size() != 2) throw node.error("must be [width, height]");
-  const Resolution seen = {items[0].integer(1, kMost), items[1].integer(1, kMost)};
+  const Resolution seen = {items[0].integer(1, kMax), items[1].integer(1, kMax)};
   const Resolution own = camera.resolution_px.known() || !camera.intrinsics
                              ? camera.resolution_px
                              : camera.intrinsics->resolution_px;

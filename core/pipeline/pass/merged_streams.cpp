@@ -39,8 +39,8 @@ std::int64_t firstTime_ns(const SensorPacket& packet) {
 
 // Power of 1000 by which one time since 1970 is larger than another, as in a table whose unit is wrong; 0 if it is none.
 double unitRatio(double time_s, double other_s) {
-  constexpr double kNear = 1e-3, kLeast_s = 1e5;
-  if (time_s <= 0.0 || other_s <= 0.0 || std::max(time_s, other_s) < kLeast_s) return 0.0;
+  constexpr double kNear = 1e-3, kMin_s = 1e5;
+  if (time_s <= 0.0 || other_s <= 0.0 || std::max(time_s, other_s) < kMin_s) return 0.0;
   const double thousands = std::round(std::log(time_s / other_s) / std::log(1e3));
   const double ratio = std::pow(1e3, thousands);
   return thousands != 0.0 && std::abs(time_s / other_s / ratio - 1.0) < kNear ? ratio : 0.0;
@@ -216,7 +216,7 @@ bool MergedStreams::readPacket(File& file) const {
 
 // From the first frames or views. Views by hand are seconds apart, so that their interval sets how far a stray is.
 void MergedStreams::judgeTimes(File& file) const {
-  constexpr std::size_t kEnough = 30, kMost_bytes = std::size_t{64} << 20;
+  constexpr std::size_t kEnough = 30, kMax_bytes = std::size_t{64} << 20;
   constexpr double kFar = 10.0;  // intervals
   Stream& stream = file.streams.front();
   const StreamType type = file.info(stream).type;
@@ -224,7 +224,7 @@ void MergedStreams::judgeTimes(File& file) const {
   const StopWaiting until_stop(stop_);
   SeenTimes seen;
   std::size_t bytes = 0;
-  for (Packet packet; seen.count() < kEnough && bytes < kMost_bytes && file.reader->read(packet);) {
+  for (Packet packet; seen.count() < kEnough && bytes < kMax_bytes && file.reader->read(packet);) {
     seen.add(packet);
     bytes += bytesOf(packet);
     file.ahead.push_back(std::move(packet));

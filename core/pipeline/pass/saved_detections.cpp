@@ -37,8 +37,8 @@ std::string endsYaml(const LatticeEnds& ends) {
 LatticeEnds endsFrom(const YamlNode& node) {
   const std::vector<YamlNode> items = node.items();
   if (items.size() != 4) throw node.error("must be four counts");
-  constexpr int kMost = 1'000'000'000;
-  const auto count = [&](std::size_t k) { return items[k].integer(0, kMost); };
+  constexpr int kMax = 1'000'000'000;
+  const auto count = [&](std::size_t k) { return items[k].integer(0, kMax); };
   return {count(0), count(1), count(2), count(3)};
 }
 
@@ -201,7 +201,7 @@ RestoredDetections restoreDetections(const std::filesystem::path& folder, const 
 namespace {
 
 constexpr std::array kStatuses = {"ok", "doubtful", "failed"};  // in CalibrationStatus's order
-constexpr int kMostCells = 1000, kMostCount = 1'000'000'000;
+constexpr int kMaxCells = 1000, kMaxCount = 1'000'000'000;
 
 struct NumberKey {
   const char* key;
@@ -235,10 +235,10 @@ std::string imageYaml(const ImageMap& image) {
 
 ImageMap imageFrom(const YamlNode& map) {
   ImageMap image;
-  image.columns = map["columns"].integer(1, kMostCells);
-  image.rows = map["rows"].integer(1, kMostCells);
+  image.columns = map["columns"].integer(1, kMaxCells);
+  image.rows = map["rows"].integer(1, kMaxCells);
   for (const YamlNode& item : map["circles"].items())
-    image.cells.emplace_back().circles = item.integer(0, kMostCount);
+    image.cells.emplace_back().circles = item.integer(0, kMaxCount);
   if (image.cells.size() != static_cast<std::size_t>(image.columns * image.rows))
     throw map.error("does not have a count for each cell");
   return image;
@@ -280,7 +280,7 @@ IntrinsicsResult foundIntrinsicsFrom(const YamlNode& map, const CameraIntrinsics
   for (const YamlNode& item : map["advice"].items()) found.advice.push_back(item.text());
   found.intrinsics = intrinsics;
   for (const NumberKey& row : kNumbers) found.*row.number = map[row.key].real();
-  for (const CountKey& row : kCounts) found.*row.count = map[row.key].integer(0, kMostCount);
+  for (const CountKey& row : kCounts) found.*row.count = map[row.key].integer(0, kMaxCount);
   found.covariance = covarianceFrom(map["covariance"]);
   found.image = imageFrom(map["image"]);
   setSigmas(intrinsics, found.covariance, found.image);

@@ -136,10 +136,10 @@ std::vector<double> rejectedTimes_s(const BoardObservations& camera) {
 }
 
 std::string rejectedSentence(const BoardObservations& camera) {
-  constexpr std::size_t kMostTimes = 20;
+  constexpr std::size_t kMaxTimes = 20;
   const std::vector<double> times_s = rejectedTimes_s(camera);
   if (times_s.empty()) return {};
-  const std::size_t shown = std::min(times_s.size(), kMostTimes);
+  const std::size_t shown = std::min(times_s.size(), kMaxTimes);
   std::string text = fmt::format("{}: {} with the board rejected by hand, at", camera.camera,
                                  counted(times_s.size(), "window"));
   for (std::size_t i = 0; i < shown; ++i) text += fmt::format("{} {:.3f}", i == 0 ? "" : ",", times_s[i]);

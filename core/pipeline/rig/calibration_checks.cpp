@@ -55,7 +55,7 @@ void checkUnits(const ImuData& imu, const SessionImu* session, const Initialisat
   }
   const double norm = medianOf(std::move(norms));
   checkNotExchanged(imu, norm, options);
-  if (norm < options.least_acceleration_m_s2 || norm > options.largest_acceleration_m_s2) {
+  if (norm < options.min_acceleration_m_s2 || norm > options.max_acceleration_m_s2) {
     const LikelyUnit unit =
         likelyUnitOfForces(session, norm / options.gravity_m_s2, 2.0 * options.force_unit_tolerance);
     throw badInput(
@@ -63,17 +63,17 @@ void checkUnits(const ImuData& imu, const SessionImu* session, const Initialisat
         fmt::format("the median norm of the accelerations is {:.3g} m/s^2 instead of about 9.81{}{}", norm,
                     unit.words.empty() ? "" : ": the unit seems to be ", unit.words),
         !unit.words.empty() ? fmt::format("Set acceleration_unit: {} for this IMU", unit.setting)
-        : norm < options.least_acceleration_m_s2 ? "Record accelerations with gravity (not linear or user "
-                                                   "accelerations), or check acceleration_unit "
-                                                   "(m/s^2, g, -g) of this IMU"
-                                                 : "Set acceleration_unit for this IMU: m/s^2, g, -g, or for "
-                                                   "raw counts the size of a count as its "
-                                                   "data sheet states it, such as 1/16384 g")
+        : norm < options.min_acceleration_m_s2 ? "Record accelerations with gravity (not linear or user "
+                                                 "accelerations), or check acceleration_unit "
+                                                 "(m/s^2, g, -g) of this IMU"
+                                               : "Set acceleration_unit for this IMU: m/s^2, g, -g, or for "
+                                                 "raw counts the size of a count as its "
+                                                 "data sheet states it, such as 1/16384 g")
         .repairedBy(unit.only ? std::optional(Repair{"imus." + imu.name + ".acceleration_unit", unit.setting})
                               : std::nullopt);
   }
   const double rms = std::sqrt(rate2 / static_cast<double>(imu.samples.size()));
-  if (rms > options.largest_rotation_rate_rad_s) {
+  if (rms > options.max_rotation_rate_rad_s) {
     throw badInput(imu.name,
                    fmt::format("the angular rates are {:.0f} rad/s RMS: the unit seems to be deg/s", rms),
                    "Set angular_rate_unit: deg/s for this IMU")
@@ -98,12 +98,12 @@ void checkSeparateSensors(const ImuData& imu, const SessionImu& session) {
       spanOf(session.stream, "gyroscope", measuresRate<ImuSample>, &ImuSample::angular_rate_rad_s);
   const auto forces = spanOf(session.accelerometer_stream, "accelerometer", measuresForce<ImuSample>,
                              &ImuSample::specific_force_m_s2);
-  constexpr double kLeastShared = 0.5;  // of the longer one's time
+  constexpr double kMinShared = 0.5;  // of the longer one's time
   const double shared_s =
       secondsSince(std::max(rates.first, forces.first), std::min(rates.second, forces.second));
   const double whole_s =
       std::max(secondsSince(rates.first, rates.second), secondsSince(forces.first, forces.second));
-  if (shared_s < kLeastShared * whole_s)
+  if (shared_s < kMinShared * whole_s)
     throw badInput(imu.name,
                    fmt::format("{} and {} overlap for only {:.2f} s of {:.2f} s", session.stream,
                                session.accelerometer_stream, std::max(shared_s, 0.0), whole_s),
@@ -138,14 +138,14 @@ double durationOf(const ImuData& imu) {
 }
 
 void checkDuration(const Session& session, const DetectionResult& pass) {
-  const double least_s = session.options.initialisation->least_overlap_s;
+  const double min_s = session.options.initialisation->min_overlap_s;
   const auto check = [&](const std::string& sensor, double duration_s) {
-    if (duration_s >= least_s) return;
+    if (duration_s >= min_s) return;
     throw withClockRate(
         calibrationFailed(
             sensor,
             fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are required{}", duration_s,
-                        least_s, session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
+                        min_s, session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
             "Record at least 20 s of varied motion"),
         session, pass.cameras.front(), pass.imus);
   };
@@ -166,11 +166,11 @@ void logDetections(const DetectionResult& pass, const RunContext& context) {
 }
 
 // A log that ends early, say: the reason why many views are not used.
-void tellUncovered(const DetectionResult& pass, double least_coverage, std::vector<RecordingFault>& faults) {
+void tellUncovered(const DetectionResult& pass, double min_coverage, std::vector<RecordingFault>& faults) {
   for (const BoardObservations& camera : pass.cameras) {
     for (const ImuData& imu : pass.imus) {
       const double camera_s = durationOf(camera), imu_s = durationOf(imu);
-      if (imu_s >= least_coverage * camera_s) continue;
+      if (imu_s >= min_coverage * camera_s) continue;
       addUnlessListed(
           {imu.name, FaultKind::Part, imu_s,
            fmt::format("{}: its samples cover {:.1f} s, those of {} {:.1f} s: views beyond are not used",
@@ -251,7 +251,7 @@ void checkPass(const Session& session, const RunContext& context, DetectionResul
     const std::optional<RecordingFault> unseen = unseenCircles(pass.cameras[k], session.boardOf(k));
     if (unseen) addUnlessListed(*unseen, pass.faults);
   }
-  tellUncovered(pass, session.options.initialisation->least_imu_coverage, pass.faults);
+  tellUncovered(pass, session.options.initialisation->min_imu_coverage, pass.faults);
   for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
   logDetections(pass, context);
   checkDuration(session, pass);

@@ -271,10 +271,10 @@ class Calibration {
   // parameters continue from the solution before, unless that has a wrong input: its parameters may be far from right.
   BatchSolution solveWithTags(const std::optional<CalibrationState>& solved,
                               std::vector<IterationRecord> before) {
-    constexpr int kMostRounds = 5;
+    constexpr int kMaxRounds = 5;
     BatchSolution solution = solved ? continueBatch(input_, *solved, std::move(before), options_, context_)
                                     : optimiseBatch(input_, initial_.state, options_, context_);
-    for (int round = 0; round < kMostRounds && moveCornersOfTags(solution); ++round)
+    for (int round = 0; round < kMaxRounds && moveCornersOfTags(solution); ++round)
       solution = continueBatch(input_, solution.state, std::move(solution.iterations), options_, context_);
     return solution;
   }

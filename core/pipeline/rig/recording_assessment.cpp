@@ -111,14 +111,13 @@ class Assessor {
   }
 
   void assessDuration() {
-    const double least_s = session_.options.initialisation->least_overlap_s;
+    const double min_s = session_.options.initialisation->min_overlap_s;
     double duration_s = 0.0;
     for (const BoardObservations& camera : pass_.cameras)
       if (!camera.windows.empty())
         duration_s = std::max(duration_s, camera.windows.back().time_s - camera.windows.front().time_s);
-    add(AssessedThing::Duration, {}, lightOf(duration_s, kGood_s, least_s),
-        fmt::format("{:.1f} s", duration_s), fmt::format("{:g} s", kGood_s),
-        "Record 20 to 30 s of varied motion.");
+    add(AssessedThing::Duration, {}, lightOf(duration_s, kGood_s, min_s), fmt::format("{:.1f} s", duration_s),
+        fmt::format("{:g} s", kGood_s), "Record 20 to 30 s of varied motion.");
   }
 
   html::Measures measured() const {

@@ -11,7 +11,7 @@
 namespace evical {
 namespace {
 
-constexpr double kLeastSigma = 1e-150;
+constexpr double kMinSigma = 1e-150;
 
 // True if gyroscope and accelerometer have separate stamps.
 bool areApart(const ImuData& imu) {
@@ -110,7 +110,7 @@ void addStampErrors(const CalibrationInput& input, const std::vector<double>& st
   };
   for (Eigen::Index k = 0; k < covariance.cols(); ++k) add(k, report.columns[static_cast<std::size_t>(k)]);
   report.standard_deviations = covariance.diagonal().cwiseSqrt();
-  const Eigen::VectorXd scale = report.standard_deviations.cwiseMax(kLeastSigma).cwiseInverse();
+  const Eigen::VectorXd scale = report.standard_deviations.cwiseMax(kMinSigma).cwiseInverse();
   report.correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
   report.correlation.diagonal().setOnes();
   for (std::size_t k = 0; k < report.columns.size(); ++k) {

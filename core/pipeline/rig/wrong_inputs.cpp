@@ -196,10 +196,10 @@ std::optional<CalibrationError> wrongLens(const Session& session, const Calibrat
 
 // Radius of the circles by their edges, in units of the given one; empty if no view shows it.
 std::optional<double> seenRadius(const CameraData& camera, const Board& board) {
-  constexpr std::size_t kLeastCircles = 8, kLeastViews = 10;
+  constexpr std::size_t kMinCircles = 8, kMinViews = 10;
   std::vector<double> ratios;
   for (const BoardView& view : camera.observations.views) {
-    if (view.circles.size() < kLeastCircles) continue;
+    if (view.circles.size() < kMinCircles) continue;
     // Affine map from the board to the image, by least squares.
     Eigen::MatrixX3d places(static_cast<Eigen::Index>(view.circles.size()), 3);
     Eigen::MatrixX2d pixels(places.rows(), 2);
@@ -216,7 +216,7 @@ std::optional<double> seenRadius(const CameraData& camera, const Board& board) {
     const double radius_px = medianOf(std::move(radii_px));
     if (px_per_m > 0.0 && radius_px > 0.0) ratios.push_back(radius_px / (px_per_m * board.radius_m));
   }
-  if (ratios.size() < kLeastViews) return std::nullopt;
+  if (ratios.size() < kMinViews) return std::nullopt;
   return medianOf(std::move(ratios));
 }
 
@@ -259,11 +259,11 @@ std::optional<QualityWarning> wrongBoard(const CalibrationInput& input, const In
 // Drift without the pull of its prior around 0, which is strong where a wrong clock makes the other errors large.
 // `as_weighed`: of the solution, so without what the errors add to the reported variance.
 double driftByData_ppm(double drift_ppm, const QuantityAddress& number,
-                       const UncertaintyEstimate& uncertainty, double prior_ppm, double least_share) {
+                       const UncertaintyEstimate& uncertainty, double prior_ppm, double min_share) {
   const std::optional<Eigen::Index> column = columnOf(number, uncertainty.report.columns);
   if (!column) return drift_ppm;
   const double of_prior = uncertainty.as_weighed(*column, *column) / (prior_ppm * prior_ppm);
-  return drift_ppm / std::max(least_share, 1.0 - of_prior);
+  return drift_ppm / std::max(min_share, 1.0 - of_prior);
 }
 
 // Clocks of computers and sensors differ by some ten ppm; stamps that are computed from a nominal rate, by up to some
@@ -277,9 +277,9 @@ std::optional<QualityWarning> wrongClock(const CalibrationInput& input, const Ca
   std::optional<QualityWarning> wrong;
   const auto test = [&](const char* group, const auto& data, const QuantityAddress& number,
                         double estimated_ppm, double sigma_ppm) {
-    const double least_ppm =
+    const double min_ppm =
         std::max(options.wrong_clock_prior_sigmas * prior_ppm, options.wrong_clock_sigmas * sigma_ppm);
-    if (wrong || data.prior.time_offset_drift || !(std::abs(estimated_ppm) > least_ppm)) return;
+    if (wrong || data.prior.time_offset_drift || !(std::abs(estimated_ppm) > min_ppm)) return;
     const double drift_ppm =
         driftByData_ppm(estimated_ppm, number, uncertainty, prior_ppm, options.wrong_clock_share);
     const double pace = 1.0 + 1e-6 * drift_ppm;

@@ -302,8 +302,8 @@ bool isTiedTo(const std::string& result_yaml, std::string_view content) {
   if (part.name != kChecksum) return true;
   std::int64_t sum = -1;
   try {
-    constexpr std::size_t kMost = 1;
-    columns::read(kChecksum, sum, runDatasets(std::string(content.substr(0, end + 1 + part.size))), kMost);
+    constexpr std::size_t kMax = 1;
+    columns::read(kChecksum, sum, runDatasets(std::string(content.substr(0, end + 1 + part.size))), kMax);
   } catch (const CalibrationError&) {
     return false;
   }

@@ -62,7 +62,7 @@ RunSummary summaryFrom(const YamlNode& root, const std::filesystem::path& folder
   if (!root.isMap() || !root.has("evical_run"))
     throw root.error("is not a list entry of a run", "Open result.yaml instead");
   root["evical_run"].integer(1, 1);
-  constexpr int kMost = 1'000'000'000;
+  constexpr int kMax = 1'000'000'000;
   RunSummary summary;
   summary.folder = folder;
   summary.name = root["name"].text();
@@ -71,7 +71,7 @@ RunSummary summaryFrom(const YamlNode& root, const std::filesystem::path& folder
   summary.reason = root["reason"].text();
   summary.recording = root["recording"].anyText();
   summary.took_s = root["took_s"].real();
-  summary.rejected_windows = root["rejected_windows"].integer(0, kMost);
+  summary.rejected_windows = root["rejected_windows"].integer(0, kMax);
   const YamlNode options = root["options"];
   for (const std::string& key : options.keys()) {
     OptionRow& row = summary.options.emplace_back();
@@ -119,8 +119,8 @@ Session sessionFrom(const NamedResult& named, const std::filesystem::path& folde
 }
 
 void readBoard(const YamlNode& detections, Session& session) {
-  constexpr int kMost = 1000;
-  constexpr double kMost_m = 100.0;
+  constexpr int kMax = 1000;
+  constexpr double kMax_m = 100.0;
   const YamlNode map = detections["board"];
   session.recording = session.source.parent_path() / detections["recording"].anyText();
   session.board.type = static_cast<BoardType>(map["type"].choice(kBoardTypeNames));
@@ -128,11 +128,11 @@ void readBoard(const YamlNode& detections, Session& session) {
     session.board = boardOfPoints(pointsFrom(map["points_m"]));
     return;
   }
-  session.board.rows = map["rows"].integer(1, kMost);
-  session.board.cols = map["cols"].integer(1, kMost);
-  session.board.spacing_m = map["spacing_m"].real(1e-6, kMost_m, "m");
-  session.board.radius_m = map["radius_m"].real(0.0, kMost_m, "m");
-  session.board.tag_size_m = map["tag_size_m"].real(0.0, kMost_m, "m");
+  session.board.rows = map["rows"].integer(1, kMax);
+  session.board.cols = map["cols"].integer(1, kMax);
+  session.board.spacing_m = map["spacing_m"].real(1e-6, kMax_m, "m");
+  session.board.radius_m = map["radius_m"].real(0.0, kMax_m, "m");
+  session.board.tag_size_m = map["tag_size_m"].real(0.0, kMax_m, "m");
 }
 
 // Reads the files of a folder one by one; unreadable ones are noted.
@@ -379,7 +379,7 @@ std::vector<std::string> differingFrom(const RunSummary& before, const RunSummar
   return texts;
 }
 
-void removeOldRuns(std::vector<RunSummary> runs, std::size_t most, std::uintmax_t most_bytes) {
+void removeOldRuns(std::vector<RunSummary> runs, std::size_t most, std::uintmax_t max_bytes) {
   if (runs.empty()) return;
   std::sort(runs.begin(), runs.end(),
             [](const RunSummary& a, const RunSummary& b) { return a.made_s < b.made_s; });
@@ -388,7 +388,7 @@ void removeOldRuns(std::vector<RunSummary> runs, std::size_t most, std::uintmax_
   for (const RunSummary& run : runs) sizes.push_back(sizeOf(run.folder));
   std::uintmax_t bytes = 0;
   for (const std::uintmax_t size : sizes) bytes += size;
-  for (std::size_t k = 0; k + 1 < runs.size() && (runs.size() - k > most || bytes > most_bytes); ++k) {
+  for (std::size_t k = 0; k + 1 < runs.size() && (runs.size() - k > most || bytes > max_bytes); ++k) {
     std::error_code ignored;
     std::filesystem::remove_all(runs[k].folder, ignored);
     bytes -= sizes[k];

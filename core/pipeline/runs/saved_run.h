@@ -96,11 +96,11 @@ void renameRun(const std::filesystem::path& folder, const std::string& name);
 // All runs in subfolders, the oldest first; unreadable ones are omitted.
 std::vector<RunSummary> listRuns(const std::filesystem::path& folder);
 
-// Options of a run that differ from those of another: "grid.least_circles 9 (was 8)".
+// Options of a run that differ from those of another: "grid.min_circles 9 (was 8)".
 std::vector<std::string> differingFrom(const RunSummary& before, const RunSummary& run);
 
-// Removes the oldest runs until at most `most` runs with at most `most_bytes` in total remain; named runs are
+// Removes the oldest runs until at most `most` runs with at most `max_bytes` in total remain; named runs are
 // removed last, the newest is kept.
-void removeOldRuns(std::vector<RunSummary> runs, std::size_t most, std::uintmax_t most_bytes);
+void removeOldRuns(std::vector<RunSummary> runs, std::size_t most, std::uintmax_t max_bytes);
 
 }  // namespace evical

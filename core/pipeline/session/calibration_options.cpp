@@ -198,18 +198,18 @@ constexpr std::tuple kCheckFields{
     Field{"without_board_time_offset_ms", &CheckOptions::without_board_time_offset_ms, 3.0, within(1e-4, 1e4),
           "ms", "Required detectability of time offset changes in a check without a board.", Level::Expert,
           Applies::InCheckWithoutBoard},
-    Field{"without_board_least_rotation_deg", &CheckOptions::without_board_least_rotation_deg, 0.2,
+    Field{"without_board_min_rotation_deg", &CheckOptions::without_board_min_rotation_deg, 0.2,
           within(0.0, 90.0), "deg",
           "Smallest rotation change that a check without a board reports: scenes and motion cause such "
           "errors."},
-    Field{"without_board_least_time_offset_ms", &CheckOptions::without_board_least_time_offset_ms, 0.5,
+    Field{"without_board_min_time_offset_ms", &CheckOptions::without_board_min_time_offset_ms, 0.5,
           within(0.0, 1e4), "ms", "Smallest time offset change that a check without a board reports."},
     Field{"without_board_misfit", &CheckOptions::without_board_misfit, 0.5, within(0.01, 10.0), "",
           "Largest residual share of the angular rates without a board; above it, camera and IMU are not on "
           "one rig."},
     Field{"without_board_scale", &CheckOptions::without_board_scale, 0.1, within(0.001, 10.0), "",
           "Largest relative error of rotations without a board; above it, the lens is another one."},
-    Field{"least_board_share", &CheckOptions::least_board_share, 0.02, within(0.0, 1.0), "",
+    Field{"min_board_share", &CheckOptions::min_board_share, 0.02, within(0.0, 1.0), "",
           "Smallest share of event windows with the board; below it, the check does not use the board."},
     Field{"copy_sigmas", &CheckOptions::copy_sigmas, 0.2, within(0.0, 1.0), "sigma",
           "Largest change in a copy of the old recording; one of 6 s gave 0.07."}};

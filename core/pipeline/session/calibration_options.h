@@ -80,11 +80,11 @@ struct CheckOptions {
   bool no_board;
   double without_board_rotation_deg;
   double without_board_time_offset_ms;
-  double without_board_least_rotation_deg;
-  double without_board_least_time_offset_ms;
+  double without_board_min_rotation_deg;
+  double without_board_min_time_offset_ms;
   double without_board_misfit;
   double without_board_scale;
-  double least_board_share;
+  double min_board_share;
   double copy_sigmas;
 
   CheckOptions();  // the defaults

@@ -15,7 +15,7 @@
 namespace evical {
 namespace {
 
-constexpr std::size_t kMostPoints = 10'000;
+constexpr std::size_t kMaxPoints = 10'000;
 const char* const kFlat = "Give all points in one plane, with the same z or without z";
 
 // Checks that all points are in the plane of the first one.
@@ -34,7 +34,7 @@ class Flat {
 struct PointTable {
   std::array<std::size_t, 3> columns = {0, 1, 2};  // of index, x and y
   std::optional<std::size_t> z_column = 3;
-  std::size_t least_columns = 3;
+  std::size_t min_columns = 3;
   std::vector<std::optional<Eigen::Vector2d>> places_m;
   Flat flat;
 };
@@ -45,13 +45,13 @@ void readNames(const std::vector<std::string_view>& names, const std::string& pl
   const auto columnOf = [&](std::string_view name) {
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   };
-  table.least_columns = 0;
+  table.min_columns = 0;
   for (std::size_t k = 0; k < kNeeded.size(); ++k) {
     table.columns.at(k) = columnOf(kNeeded.at(k));
     if (table.columns.at(k) == names.size())
       throw badInput(place, fmt::format("has no column {}", kNeeded.at(k)),
                      "Give the columns point,x_m,y_m: index and position in metres");
-    table.least_columns = std::max(table.least_columns, table.columns.at(k) + 1);
+    table.min_columns = std::max(table.min_columns, table.columns.at(k) + 1);
   }
   const std::size_t z = columnOf("z_m");
   table.z_column = z < names.size() ? std::optional(z) : std::nullopt;
@@ -63,13 +63,13 @@ void readPoint(const std::vector<std::string_view>& columns, const std::string& 
   const auto parsed = [&](std::size_t k, double& value) {
     return parseNumber(columns[table.columns.at(k)], value);
   };
-  if (columns.size() < table.least_columns || !parsed(0, index) || !parsed(1, at_m.x()) ||
+  if (columns.size() < table.min_columns || !parsed(0, index) || !parsed(1, at_m.x()) ||
       !parsed(2, at_m.y()) ||
       (table.z_column && *table.z_column < columns.size() && !parseNumber(columns[*table.z_column], z_m)))
     throw badInput(place, "is not a point: index, x and y are expected", "Give point,x_m,y_m in each line");
-  if (!(index >= 0.0 && index < static_cast<double>(kMostPoints)) || index != std::floor(index))
+  if (!(index >= 0.0 && index < static_cast<double>(kMaxPoints)) || index != std::floor(index))
     throw badInput(place,
-                   fmt::format("{} is not a valid point index: indices are 0 to {}", index, kMostPoints - 1),
+                   fmt::format("{} is not a valid point index: indices are 0 to {}", index, kMaxPoints - 1),
                    "Count the points from 0");
   if (!table.flat.take(z_m))
     throw badInput(place, fmt::format("z is {} m, but different for other points", z_m), kFlat);
@@ -88,8 +88,8 @@ std::vector<Eigen::Vector2d> pointsFrom(const YamlNode& list) {
   for (const YamlNode& item : list.items()) {
     const std::vector<YamlNode> numbers = item.items();
     if (numbers.size() != 2 && numbers.size() != 3) throw item.error("must be [x, y] in metres");
-    if (points_m.size() == kMostPoints)
-      throw item.error(fmt::format("exceeds the maximum of {} points per board", kMostPoints));
+    if (points_m.size() == kMaxPoints)
+      throw item.error(fmt::format("exceeds the maximum of {} points per board", kMaxPoints));
     points_m.emplace_back(numbers[0].real(), numbers[1].real());
     const double z_m = numbers.size() > 2 ? numbers[2].real() : 0.0;
     if (!flat.take(z_m))

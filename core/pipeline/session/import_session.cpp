@@ -153,9 +153,9 @@ void notePriors(const std::vector<ImportSource>& sources, std::vector<std::strin
 // Square pixels have nearly the same focal lengths. Numbers in the order fx cx fy cy do not.
 void noteOblongPixels(const std::string& name, const CameraIntrinsics& camera,
                       std::vector<std::string>& notes) {
-  constexpr double kMost = 1.3;
+  constexpr double kMax = 1.3;
   const double factor = camera.focal_length_px.maxCoeff() / camera.focal_length_px.minCoeff();
-  if (factor > kMost)
+  if (factor > kMax)
     notes.push_back(fmt::format(
         "{}: fx and fy differ by a factor of {:.1f}: check the order of the numbers (fx fy cx cy)", name,
         factor));

@@ -23,10 +23,10 @@ std::optional<MeasuredLength> readMeasured(const YamlNode& board) {
   const auto map = board.find("measured");
   if (!map) return std::nullopt;
   map->allowOnly({"spacings", "length_m", "std_m"});
-  constexpr int kMost = 200;
+  constexpr int kMax = 200;
   constexpr double kLargest_m = 100.0;
   MeasuredLength measured;
-  measured.spacings = (*map)["spacings"].integer(1, kMost);
+  measured.spacings = (*map)["spacings"].integer(1, kMax);
   measured.length_m = (*map)["length_m"].real(1e-4, kLargest_m, "m");
   if (const auto node = map->find("std_m")) measured.std_m = node->real(0.0, kLargest_m, "m");
   if (const auto node = board.find("spacing_std"))

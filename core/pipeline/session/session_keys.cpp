@@ -44,7 +44,7 @@ AxesReading axesOrThrow(const std::string& key, const std::string& value) {
 }
 
 double clockScaleFrom(const std::string& key, const std::string& value) {
-  return YamlNode::parse(value, key).real(kLeastClockScale, 1.0 / kLeastClockScale, "");
+  return YamlNode::parse(value, key).real(kMinClockScale, 1.0 / kMinClockScale, "");
 }
 
 }  // namespace

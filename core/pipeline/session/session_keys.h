@@ -33,7 +33,7 @@ void setFromSession(const YamlNode& node, CalibrationOptions& options, const std
 // Seconds since the recording's start, [begin, end]. Throws CalibrationError (BadInput).
 std::array<double, 2> timeRangeFrom(const YamlNode& node);
 
-inline constexpr double kLeastClockScale = 1e-7;
+inline constexpr double kMinClockScale = 1e-7;
 
 // acceleration_unit, angular_rate_unit, gyroscope_axes, accelerometer_axes or clock_scale. Throws
 // CalibrationError (BadInput).

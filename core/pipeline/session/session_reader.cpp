@@ -67,7 +67,7 @@ void readTable(const YamlNode& map, Sensor& sensor) {
   if (const auto node = map.find("clock_offset_s"))
     sensor.clock_offset_s = node->real(-kLargestOffset_s, kLargestOffset_s, "s");
   if (const auto node = map.find("clock_scale"))
-    sensor.clock_scale = node->real(kLeastClockScale, 1.0 / kLeastClockScale, "");
+    sensor.clock_scale = node->real(kMinClockScale, 1.0 / kMinClockScale, "");
   if (const auto columns = map.find("columns")) readColumns(*columns, sensor);
 }
 
@@ -238,7 +238,7 @@ std::vector<std::string> groupNames() {
   return names;
 }
 
-// Accepts `grid: {least_circles: 7}` and `grid.least_circles: 7`, also below `tuning`.
+// Accepts `grid: {min_circles: 7}` and `grid.min_circles: 7`, also below `tuning`.
 void setOptions(const YamlNode& map, const std::string& group, CalibrationOptions& options) {
   for (const std::string& key : map.keys()) {
     const YamlNode value = map[key];

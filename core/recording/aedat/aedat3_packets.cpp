@@ -16,7 +16,7 @@ constexpr std::uint64_t kFrameHeader_bytes = 36;
 constexpr std::int32_t kSmallestEvent_bytes = 8;
 constexpr std::int32_t kTimeOffset_bytes = 4;  // of the types with a known size
 constexpr std::int16_t kLastType = 12;
-constexpr std::int16_t kMostSources = 256;
+constexpr std::int16_t kMaxSources = 256;
 
 Type typeOf(std::int16_t number) {
   return number <= static_cast<std::int16_t>(Type::Imu9) ? static_cast<Type>(number) : Type::Other;
@@ -127,7 +127,7 @@ std::optional<PacketHeader> decodeHeader(std::string_view bytes) {
   const auto overflow = cursor.number<std::int32_t>(), capacity = cursor.number<std::int32_t>();
   const auto events = cursor.number<std::int32_t>(), valid = cursor.number<std::int32_t>();
   const bool possible = cursor.ok() && type >= 0 && type <= kLastType && source >= 0 &&
-                        source < kMostSources && size >= kSmallestEvent_bytes && time_offset >= 0 &&
+                        source < kMaxSources && size >= kSmallestEvent_bytes && time_offset >= 0 &&
                         time_offset <= size - 4 && overflow >= 0 && capacity == events && valid >= 0 &&
                         valid <= events;
   if (!possible) return std::nullopt;

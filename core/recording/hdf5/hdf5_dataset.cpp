@@ -15,9 +15,9 @@
 namespace evical::hdf5 {
 namespace {
 
-constexpr std::size_t kMostDatasets = 10'000;
-constexpr std::uint64_t kLeastBlock_rows = 65'536, kLargestBlock_rows = 1 << 20;
-constexpr std::size_t kLeastCache_bytes = std::size_t{1} << 20, kLargestCache_bytes = std::size_t{1} << 28;
+constexpr std::size_t kMaxDatasets = 10'000;
+constexpr std::uint64_t kMinBlock_rows = 65'536, kLargestBlock_rows = 1 << 20;
+constexpr std::size_t kMinCache_bytes = std::size_t{1} << 20, kLargestCache_bytes = std::size_t{1} << 28;
 constexpr std::size_t kLargestChunk_bytes = std::size_t{1} << 30;
 
 std::uint64_t bytesOfFile(hid_t file) {
@@ -107,7 +107,7 @@ class Walk {
       return inner.valid() && below(inner, path + "/") ? 0 : -1;
     }
     if (object.type == H5O_TYPE_DATASET || object.type == H5O_TYPE_UNKNOWN) addObject(path, object.type);
-    return found.datasets.size() + found.damaged.size() >= kMostDatasets ? 1 : 0;
+    return found.datasets.size() + found.damaged.size() >= kMaxDatasets ? 1 : 0;
   }
 
   void addObject(const std::string& path, H5O_type_t type) {
@@ -191,7 +191,7 @@ DatasetRows::DatasetRows(hid_t file, const DatasetInfo& info, hid_t memory_type,
   }
   // Opened again with room for at least one unpacked chunk, so that none is unpacked twice.
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-  H5Pset_chunk_cache(access, 521, std::clamp(2 * chunk_bytes_, kLeastCache_bytes, kLargestCache_bytes), 1.0);
+  H5Pset_chunk_cache(access, 521, std::clamp(2 * chunk_bytes_, kMinCache_bytes, kLargestCache_bytes), 1.0);
   dataset_ = Handle(H5Dopen2(file, path_.c_str(), access), H5Dclose);
 }
 
@@ -208,7 +208,7 @@ void DatasetRows::readChunkLayout(const std::string& place, std::uint64_t file_b
   const Handle creation(H5Dget_create_plist(dataset_), H5Pclose);
   const Handle type(H5Dget_type(dataset_), H5Tclose);
   requireFilters(creation, place, path_);
-  block_rows_ = kLeastBlock_rows;
+  block_rows_ = kMinBlock_rows;
   if (H5Pget_layout(creation) != H5D_CHUNKED) return;
   std::array<hsize_t, 2> chunk{1, 1};
   const int rank = H5Pget_chunk(creation, 2, chunk.data());
@@ -217,7 +217,7 @@ void DatasetRows::readChunkLayout(const std::string& place, std::uint64_t file_b
   if (chunk[0] == 0 || chunk_bytes_ > largest) {
     throw badInput(place, fmt::format("the chunks of {} are too large: {} bytes", path_, chunk_bytes_));
   }
-  const std::uint64_t chunks = (kLeastBlock_rows + chunk[0] - 1) / chunk[0];
+  const std::uint64_t chunks = (kMinBlock_rows + chunk[0] - 1) / chunk[0];
   block_rows_ = std::min<std::uint64_t>(kLargestBlock_rows, chunks * chunk[0]);
 }
 

@@ -157,7 +157,7 @@ std::string filterName(H5Z_filter_t filter) {
 namespace evical::hdf5 {
 namespace {
 
-constexpr std::size_t kMostEvents = 65'535;
+constexpr std::size_t kMaxEvents = 65'535;
 
 // `fill` is called with a run's length.
 template <class Fill>
@@ -245,7 +245,7 @@ bool decodeEcf(std::string_view bytes, std::vector<EcfEvent>& events) {
   const auto header = cursor.number<std::uint32_t>();
   const std::size_t count = header >> 2;
   events.clear();
-  if (!cursor.ok() || count > kMostEvents) return false;
+  if (!cursor.ok() || count > kMaxEvents) return false;
   events.resize(count);
   if (!decodeTimes(cursor, events)) return false;
   if ((header & 2U) != 0) {

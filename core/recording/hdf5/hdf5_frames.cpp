@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kLargestFrameChunk_bytes = std::size_t{1} << 28;
 constexpr std::uint64_t kLargestFrame_bytes = std::uint64_t{1} << 28;
-constexpr std::size_t kLeastFrameCache_bytes = std::size_t{1} << 20,
+constexpr std::size_t kMinFrameCache_bytes = std::size_t{1} << 20,
                       kLargestFrameCache_bytes = std::size_t{1} << 28;
 
 }  // namespace
@@ -41,7 +41,7 @@ FrameTable::FrameTable(hid_t file, const DatasetInfo& pictures, const DatasetInf
   const std::uint64_t picture_bytes = extent[1] * extent[2] * channels_;
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access, 521,
-                     std::clamp<std::size_t>(2 * (chunk_bytes_ + picture_bytes), kLeastFrameCache_bytes,
+                     std::clamp<std::size_t>(2 * (chunk_bytes_ + picture_bytes), kMinFrameCache_bytes,
                                              kLargestFrameCache_bytes),
                      1.0);
   dataset_ = Handle(H5Dopen2(file, path_.c_str(), access), H5Dclose);

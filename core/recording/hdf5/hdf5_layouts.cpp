@@ -20,7 +20,7 @@
 namespace evical::hdf5 {
 namespace {
 
-constexpr std::size_t kMostNamedTables = 12;
+constexpr std::size_t kMaxNamedTables = 12;
 constexpr const char* kNamedColumns =
     "Name the datasets in the session, as columns: \"t_us=DATASET,x=DATASET,y=DATASET,p=DATASET\" of a "
     "camera, or "
@@ -342,8 +342,8 @@ class TableLayoutFinder {
   std::string datasetNames() const {
     std::vector<std::string> names;
     for (const DatasetInfo& dataset : datasets_)
-      if (names.size() < kMostNamedTables) names.push_back(dataset.path);
-    return joined(names) + (datasets_.size() > kMostNamedTables ? ", ..." : "");
+      if (names.size() < kMaxNamedTables) names.push_back(dataset.path);
+    return joined(names) + (datasets_.size() > kMaxNamedTables ? ", ..." : "");
   }
 
   [[noreturn]] void failWithNames() const {

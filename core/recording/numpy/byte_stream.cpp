@@ -15,7 +15,7 @@ namespace evical::numpy {
 namespace {
 
 constexpr std::size_t kStreamBlock_bytes = std::size_t{1} << 16;
-constexpr std::uint64_t kMostDeflated = 1032;  // zlib.net, "zlib technical details"
+constexpr std::uint64_t kMaxDeflated = 1032;  // zlib.net, "zlib technical details"
 
 std::ifstream opened(const ByteRange& range) {
   std::ifstream file(range.path, std::ios::binary);
@@ -158,9 +158,8 @@ std::unique_ptr<ByteStream> openBytes(const ByteRange& range) {
 
 std::uint64_t mostInflated(std::uint64_t packed_bytes) {
   std::uint64_t most = 0;
-  return __builtin_mul_overflow(packed_bytes, kMostDeflated, &most)
-             ? std::numeric_limits<std::uint64_t>::max()
-             : most;
+  return __builtin_mul_overflow(packed_bytes, kMaxDeflated, &most) ? std::numeric_limits<std::uint64_t>::max()
+                                                                   : most;
 }
 
 }  // namespace evical::numpy

@@ -93,8 +93,8 @@ std::optional<std::int64_t> scalarOf(const Array& array) {
   std::optional<std::int64_t> value;
   if (blocks.next(1) == 1)
     blocks.forEach(0, [&](std::size_t, auto number) {
-      constexpr auto kMost = static_cast<decltype(number)>(kLatestTime_ns);
-      if (number <= kMost && number >= decltype(number)(0) - (std::is_signed_v<decltype(number)> ? kMost : 0))
+      constexpr auto kMax = static_cast<decltype(number)>(kLatestTime_ns);
+      if (number <= kMax && number >= decltype(number)(0) - (std::is_signed_v<decltype(number)> ? kMax : 0))
         value = static_cast<std::int64_t>(number);
     });
   return value;

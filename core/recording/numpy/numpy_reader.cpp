@@ -101,15 +101,15 @@ void EventTable::loadPolarities(std::uint64_t first_row, std::vector<Event>& eve
 namespace evical {
 namespace {
 
-constexpr std::size_t kMostNamed = 20;
+constexpr std::size_t kMaxNamed = 20;
 constexpr const char* kReadableArrays =
     "Save structured arrays with fields x, y, t, p, arrays of these names (also xy, timestamps, polarity "
     "and similar ones), or rows of four numbers: t, x, y, p in any order";
 
 std::string list(const std::vector<std::string>& names) {
   const std::vector<std::string> first(
-      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMostNamed)));
-  return joined(first) + (names.size() > kMostNamed ? ", ..." : "");
+      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMaxNamed)));
+  return joined(first) + (names.size() > kMaxNamed ? ", ..." : "");
 }
 
 bool isOfAnImu(const std::string& name) {

@@ -220,7 +220,7 @@ std::optional<fs::path> findTable(const fs::path& folder) {
 
 // Names that differ only by a word are of several cameras if these have the same numbers: left00.png, right00.png.
 std::vector<std::vector<std::string>> byCamera(const std::vector<std::string>& names) {
-  constexpr std::size_t kMostCameras = 8;
+  constexpr std::size_t kMaxCameras = 8;
   std::map<std::string, std::vector<std::string>> groups;
   std::map<std::string, std::set<std::string>> numbers;
   for (const std::string& name : names) {
@@ -230,7 +230,7 @@ std::vector<std::vector<std::string>> byCamera(const std::vector<std::string>& n
   }
   const bool alike = std::ranges::all_of(
       numbers, [&](const auto& group) { return group.second == numbers.begin()->second; });
-  if (!alike || groups.size() < 2 || groups.size() > kMostCameras || numbers.begin()->second.size() < 2)
+  if (!alike || groups.size() < 2 || groups.size() > kMaxCameras || numbers.begin()->second.size() < 2)
     return {names};
   std::vector<std::vector<std::string>> cameras;
   for (auto& [word, own] : groups) cameras.push_back(std::move(own));

@@ -98,7 +98,7 @@ std::optional<std::int64_t> secondsInName(std::string_view name, int digits) {
 struct NameUnit {
   const char* name;
   int digits;  // of the unit in ns
-  std::size_t fewest_digits, most_digits;
+  std::size_t fewest_digits, max_digits;
 };
 constexpr NameUnit kNameUnits[] = {
     {"ns", 0, kFewestTimeDigits, 19}, {"us", 3, kFewestTimeDigits, 16}, {"ms", 6, 13, 13}, {"s", 9, 10, 10}};
@@ -110,7 +110,7 @@ std::optional<std::int64_t> unitsInName(std::string_view name, const NameUnit& u
   while (significant.starts_with('0')) significant.remove_prefix(1);
   const bool is_epoch = unit.digits < 6 || significant.size() == unit.fewest_digits;
   std::int64_t time_ns = 0;
-  const bool good = number.fraction.empty() && sized && is_epoch && significant.size() <= unit.most_digits &&
+  const bool good = number.fraction.empty() && sized && is_epoch && significant.size() <= unit.max_digits &&
                     parseTime(number.whole, unit.digits, time_ns) && isTime(time_ns);
   return good ? std::optional(time_ns) : std::nullopt;
 }

@@ -16,9 +16,9 @@ constexpr std::uintmax_t kLargestPicture_bytes = std::uintmax_t{1} << 28;
 
 // Size of the first existing picture.
 Resolution firstPictureSize(const pictures::PictureList& list) {
-  constexpr std::size_t kMostTried = 10;
+  constexpr std::size_t kMaxTried = 10;
   constexpr std::uintmax_t kHead_bytes = 1 << 16;
-  for (std::size_t i = 0; i < std::min(list.pictures.size(), kMostTried); ++i) {
+  for (std::size_t i = 0; i < std::min(list.pictures.size(), kMaxTried); ++i) {
     const std::filesystem::path path = list.folder / list.pictures[i].name;
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) continue;

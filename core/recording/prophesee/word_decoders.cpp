@@ -84,7 +84,7 @@ void Evt2Decoder::other(std::uint32_t word, std::uint64_t byte) {
 }
 
 std::size_t Evt21Decoder::decode(std::string_view bytes, std::uint64_t offset, std::vector<Event>& events) {
-  constexpr std::size_t kMostEvents = 32;  // per word
+  constexpr std::size_t kMaxEvents = 32;  // per word
   const std::size_t words = bytes.size() / sizeof(std::uint64_t);
   EventAppender appender(events);
   for (std::size_t i = 0; i < words; ++i) {
@@ -93,7 +93,7 @@ std::size_t Evt21Decoder::decode(std::string_view bytes, std::uint64_t offset, s
       other(word, offset + i * sizeof word);
       continue;
     }
-    appender.reserve(kMostEvents);
+    appender.reserve(kMaxEvents);
     vector(word, offset + i * sizeof word, appender);
   }
   return words * sizeof(std::uint64_t);

@@ -242,7 +242,7 @@ void BagSource::listFromChunk(std::uint64_t position) {
 // A topic of a sensor with messages of several nodes in turn is several topics. Nodes that follow each other, as after a
 // restart, are one publisher.
 void BagSource::separatePublishers() {
-  constexpr int kMostMessages = 20'000, kEnoughTurns = 4;
+  constexpr int kMaxMessages = 20'000, kEnoughTurns = 4;
   std::map<std::string, std::set<std::string>> nodes;
   for (std::size_t i = 0; i < topics_.size(); ++i) {
     const Topic& topic = topics_[i].topic;
@@ -257,7 +257,7 @@ void BagSource::separatePublishers() {
   const FaultSink sink = std::exchange(sink_, [](FaultKind, const std::string&) {});
   std::map<std::string, std::pair<std::string, int>> turns;
   SourceMessage message;
-  for (int k = 0; k < kMostMessages && next(message); ++k) {
+  for (int k = 0; k < kMaxMessages && next(message); ++k) {
     auto& [last, count] = turns[keyOf(message.topic)];
     if (publishers_[message.topic] != last) ++count;
     last = publishers_[message.topic];

@@ -25,14 +25,14 @@ void HostClock::add(std::int64_t sensor_ns, std::int64_t host_ns) {
 std::optional<HostClockOffset> HostClock::offset() const {
   if (earliest_.empty()) return std::nullopt;
   const auto lower = [](const auto& a, const auto& b) { return a.second.offset_ns < b.second.offset_ns; };
-  const std::int64_t least_ns = std::min_element(earliest_.begin(), earliest_.end(), lower)->second.offset_ns;
-  if (earliest_.size() < kFewestForDrift) return HostClockOffset{kNs_s * static_cast<double>(least_ns), {}};
+  const std::int64_t min_ns = std::min_element(earliest_.begin(), earliest_.end(), lower)->second.offset_ns;
+  if (earliest_.size() < kFewestForDrift) return HostClockOffset{kNs_s * static_cast<double>(min_ns), {}};
   // Least-squares line, with numbers small enough for doubles.
   const std::int64_t first_ns = earliest_.begin()->second.sensor_ns;
   double mean_t = 0.0, mean_o = 0.0, tt = 0.0, to = 0.0;
   const auto count = static_cast<double>(earliest_.size());
   const auto seconds = [&](const Earliest& e) { return kNs_s * static_cast<double>(e.sensor_ns - first_ns); };
-  const auto beyond = [&](const Earliest& e) { return kNs_s * static_cast<double>(e.offset_ns - least_ns); };
+  const auto beyond = [&](const Earliest& e) { return kNs_s * static_cast<double>(e.offset_ns - min_ns); };
   for (const auto& [span, earliest] : earliest_) {
     mean_t += seconds(earliest) / count;
     mean_o += beyond(earliest) / count;
@@ -43,7 +43,7 @@ std::optional<HostClockOffset> HostClock::offset() const {
   }
   const double middle_s = 0.5 * seconds(earliest_.rbegin()->second);
   const double slope = to / tt;
-  return HostClockOffset{kNs_s * static_cast<double>(least_ns) + mean_o + slope * (middle_s - mean_t),
+  return HostClockOffset{kNs_s * static_cast<double>(min_ns) + mean_o + slope * (middle_s - mean_t),
                          1e6 * slope};
 }
 

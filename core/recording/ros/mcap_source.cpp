@@ -208,9 +208,9 @@ void McapSource::addChannel(std::string_view content) {
     entry.topic.type += fmt::format(" ({})", channel.encoding);  // unknown type
     entry.topic.definition.clear();
   }
-  constexpr std::size_t kMostDefinitions_bytes = std::size_t{1} << 26;
+  constexpr std::size_t kMaxDefinitions_bytes = std::size_t{1} << 26;
   definitions_bytes_ += entry.topic.definition.size();
-  if (definitions_bytes_ > kMostDefinitions_bytes)
+  if (definitions_bytes_ > kMaxDefinitions_bytes)
     throw badInput(path_, "the definitions of its messages are too large", "Copy the file again");
   topic_of_channel_[channel.id] = topics_.size();
   topics_.push_back(std::move(entry));

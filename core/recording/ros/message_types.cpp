@@ -171,8 +171,8 @@ std::string fieldsOf(std::string_view definition) {
     if (!line.empty()) fields += (fields.empty() ? "" : ", ") + std::string(line);
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
-  constexpr std::size_t kMost = 200;
-  return fields.size() > kMost ? fields.substr(0, kMost) + " ..." : fields;
+  constexpr std::size_t kMax = 200;
+  return fields.size() > kMax ? fields.substr(0, kMax) + " ..." : fields;
 }
 
 }  // namespace

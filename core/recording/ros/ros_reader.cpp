@@ -12,8 +12,8 @@ namespace evical {
 namespace {
 
 // Range of the search for streams without messages so far.
-constexpr std::uint64_t kMostLooked_bytes = 64 << 20;
-constexpr int kMostLooked = 20'000;  // messages
+constexpr std::uint64_t kMaxLooked_bytes = 64 << 20;
+constexpr int kMaxLooked = 20'000;  // messages
 
 }  // namespace
 
@@ -49,11 +49,11 @@ bool RosReader::openFile(std::size_t index) {
 }
 
 void RosReader::matchTopics() {
-  constexpr std::size_t kMostTopics = 10'000;
-  if (source_->topics().size() > kMostTopics)
+  constexpr std::size_t kMaxTopics = 10'000;
+  if (source_->topics().size() > kMaxTopics)
     throw badInput(
         files_[file_].string(),
-        fmt::format("lists {} topics or connections, more than {}", source_->topics().size(), kMostTopics),
+        fmt::format("lists {} topics or connections, more than {}", source_->topics().size(), kMaxTopics),
         "Copy the recording again; if it is right, write its wanted topics into a new one");
   while (streams_of_topics_.size() < source_->topics().size())
     streams_of_topics_.push_back(topics_.add(source_->topics()[streams_of_topics_.size()].topic));
@@ -72,7 +72,7 @@ void RosReader::lookIntoFile() {
   std::uint64_t looked_bytes = 0;
   ros::SourceMessage message;
   source_->want(unknown);
-  for (int i = 0; anyUnknown() && i < kMostLooked && looked_bytes < kMostLooked_bytes; ++i) {
+  for (int i = 0; anyUnknown() && i < kMaxLooked && looked_bytes < kMaxLooked_bytes; ++i) {
     if (!source_->next(message)) break;
     if (message.topic >= unknown.size()) continue;
     const std::size_t stream = streams_of_topics_[message.topic];

@@ -67,13 +67,13 @@ class ListedText {
 
   // Throws CalibrationError (BadInput).
   void add(std::size_t bytes) {
-    constexpr std::uint64_t kMost_bytes = std::uint64_t{1} << 26, kMostRows = 10'000;
+    constexpr std::uint64_t kMax_bytes = std::uint64_t{1} << 26, kMaxRows = 10'000;
     bytes_ += bytes;
-    if (++rows_ <= kMostRows && bytes_ <= kMost_bytes) return;
+    if (++rows_ <= kMaxRows && bytes_ <= kMax_bytes) return;
     throw badInput(
         file_,
-        fmt::format("lists more than {} topics or message types, or more than {} MB of their texts",
-                    kMostRows, kMost_bytes >> 20),
+        fmt::format("lists more than {} topics or message types, or more than {} MB of their texts", kMaxRows,
+                    kMax_bytes >> 20),
         "Copy the recording again; if it is right, write its wanted topics into a new one");
   }
 
@@ -91,9 +91,9 @@ class SqliteSource::Database {
     status_ = sqlite3_open_v2(uriOf(path, immutable).c_str(), &handle_, flags, nullptr);
     if (!ok()) return;
     // No value is longer than the file, unless it is computed.
-    constexpr std::uint64_t kLeast_bytes = 1 << 20, kMost_bytes = 1'000'000'000;
+    constexpr std::uint64_t kMin_bytes = 1 << 20, kMax_bytes = 1'000'000'000;
     sqlite3_limit(handle_, SQLITE_LIMIT_LENGTH,
-                  static_cast<int>(std::clamp(bytesOnDisk(path), kLeast_bytes, kMost_bytes)));
+                  static_cast<int>(std::clamp(bytesOnDisk(path), kMin_bytes, kMax_bytes)));
     // Code in a file of unknown origin must not run.
     sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, cut ? 0 : 1, nullptr);
     // Files that are shorter than stated are only accepted in this mode.

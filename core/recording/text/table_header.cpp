@@ -23,12 +23,12 @@ constexpr std::string_view kUnusedName = "-";
 constexpr std::string_view kWithoutUnits =
     ". Axes without a unit are in m/s^2 or rad/s; state others, or the size of a raw count, in brackets: ax "
     "[0.001 g]";
-constexpr std::size_t kMostListed = 8;
-constexpr std::size_t kMostProposed = 100;
-constexpr std::size_t kMostImus = 8;
+constexpr std::size_t kMaxListed = 8;
+constexpr std::size_t kMaxProposed = 100;
+constexpr std::size_t kMaxImus = 8;
 
 std::string firstOf(const std::vector<std::string>& names) {
-  const std::span<const std::string> all(names), first = all.first(std::min(all.size(), kMostListed));
+  const std::span<const std::string> all(names), first = all.first(std::min(all.size(), kMaxListed));
   return joined(first) +
          (first.size() < all.size() ? fmt::format(" and {} more", all.size() - first.size()) : "");
 }
@@ -126,9 +126,9 @@ std::string suggestion(TableHeader header, std::span<const TableColumn> table, c
     names.push_back(isUnused(i) ? std::string(kUnusedName) : proposedName(header.columns[i], bare, imu));
   openTwins(header, names);
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMostProposed); ++i)
+  for (std::size_t i = 0; i < std::min(names.size(), kMaxProposed); ++i)
     text += (i > 0 ? "," : "") + names[i];
-  return text + (names.size() > kMostProposed ? fmt::format(",... ({} columns)", names.size()) : "");
+  return text + (names.size() > kMaxProposed ? fmt::format(",... ({} columns)", names.size()) : "");
 }
 
 // A header and the rows below it.
@@ -213,7 +213,7 @@ std::vector<NamedImu> pairedImus(const TableHeader& header, const std::vector<Ax
   if (!add(accelerations, &NamedImu::acceleration) || !add(rates, &NamedImu::rate)) return {};
   std::vector<NamedImu> found;
   for (const auto& [name, imu] : imus) {
-    if (!imu.acceleration || !imu.rate || found.size() == kMostImus) return {};
+    if (!imu.acceleration || !imu.rate || found.size() == kMaxImus) return {};
     found.push_back(imu);
   }
   return found;
@@ -271,7 +271,7 @@ std::vector<std::string> imuNumbers(const TableColumn& column) {
   std::map<std::string, std::size_t> counts;
   for (const std::string_view cell : column.cells) {
     ++counts[std::string(cell)];
-    if (counts.size() > kMostImus) return {};
+    if (counts.size() > kMaxImus) return {};
   }
   std::vector<std::string> numbers;
   for (const auto& [text, count] : counts) {

@@ -11,7 +11,7 @@ namespace evical {
 namespace {
 
 constexpr unsigned kBuffer_bytes = 1U << 17;
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // zlib counts in int
+constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;  // zlib counts in int
 
 // Place of the high byte in units of UTF-16 without a mark: the bytes there are 0, and the others are ASCII. -1 for other texts.
 int highByteOf(std::string_view first_bytes) {
@@ -102,7 +102,7 @@ std::size_t TextBytes::readUnpacked(char* bytes, std::size_t count) {
   std::size_t got = 0;
   while (got < count && !damaged_) {
     const int more =
-        gzread(file_.get(), bytes + got, static_cast<unsigned>(std::min(count - got, kMostAtOnce)));
+        gzread(file_.get(), bytes + got, static_cast<unsigned>(std::min(count - got, kMaxAtOnce)));
     if (more > 0) got += static_cast<std::size_t>(more);
     if (more > 0) limit_.add(static_cast<std::uint64_t>(more));
     int error = Z_OK;

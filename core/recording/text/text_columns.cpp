@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kAroundCell = " \t\r\"'";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-constexpr std::size_t kMostRows = 2000;
+constexpr std::size_t kMaxRows = 2000;
 constexpr std::size_t kImuColumns = 7;
 constexpr std::size_t kEchoedImuColumns = 40;  // of sensor_msgs/Imu: 2 of time, frame, 37 numbers
 
@@ -220,7 +220,7 @@ std::optional<std::size_t> firstThousands(const TableColumn& time) {
 }
 
 void refuseCell(TextColumns& columns, std::uint64_t line, const std::string& what, std::string_view cell) {
-  constexpr std::size_t kMostShown = 40;
+  constexpr std::size_t kMaxShown = 40;
   const bool time = what == "time";
   const bool thousands = std::ranges::any_of(std::string_view(".,'_ "),
                                              [&](char mark) { return std::ranges::count(cell, mark) > 1; });
@@ -228,7 +228,7 @@ void refuseCell(TextColumns& columns, std::uint64_t line, const std::string& wha
   columns.problem = cell.empty()
                         ? fmt::format("line {} has no {}, nor have the lines below", line, what)
                         : fmt::format("line {} has \"{}\" as {}, and no line below has one that can be read",
-                                      line, cell.substr(0, kMostShown), what);
+                                      line, cell.substr(0, kMaxShown), what);
   columns.advice = !time       ? "Write numbers with a decimal point, or check the names of the columns"
                    : thousands ? kWithoutThousands
                                : "Write times as numbers, as 2026-03-01T10:00:00.25Z, or as 12:34:56.789";
@@ -507,7 +507,7 @@ TextColumns findColumns(std::string_view first_bytes, bool cut, std::string_view
   TableHead head(!names.empty());
   const char line_end = lineEndOf(first_bytes);
   if (first_bytes.starts_with(kByteOrderMark)) first_bytes.remove_prefix(kByteOrderMark.size());
-  for (std::uint64_t number = 1; !first_bytes.empty() && head.rows < kMostRows; ++number) {
+  for (std::uint64_t number = 1; !first_bytes.empty() && head.rows < kMaxRows; ++number) {
     const std::size_t end = first_bytes.find(line_end);
     if (end == std::string_view::npos && cut && number > 1) break;
     const std::string_view line = trimmed(first_bytes.substr(0, end));

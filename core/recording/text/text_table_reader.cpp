@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kTextPacketEvents = 10'000;
 constexpr std::int64_t kTextPacketSpan_ns = 10'000'000;
 constexpr std::size_t kTextPacketSamples = 10;
-constexpr std::uint64_t kMostBadLines = 10;                // reported individually
+constexpr std::uint64_t kMaxBadLines = 10;                 // reported individually
 constexpr std::size_t kHead_bytes = std::size_t{1} << 18;  // a second of any IMU's samples
 constexpr std::int64_t kDay_ns = 86'400 * kSecond_ns;
 constexpr const char* kFiles[] = {"events.txt", "imu.txt", "events.csv", "imu.csv"};
@@ -258,10 +258,10 @@ void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector
       source.next_point = point;
       return;
     }
-    constexpr std::size_t kMost = std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1;
-    if (points.size() == kMost)
+    constexpr std::size_t kMax = std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1;
+    if (points.size() == kMax)
       throw badInput(fmt::format("{} (line {})", streams_[stream].name, source.lines.number()),
-                     fmt::format("more than {} points have the same time", kMost),
+                     fmt::format("more than {} points have the same time", kMax),
                      "Give each view another time");
     points.push_back(point);
   }
@@ -270,11 +270,11 @@ void TextTableReader::fillPoints(Source& source, std::size_t stream, std::vector
 
 void TextTableReader::finish(Source& source, std::size_t stream) {
   source.finished = true;
-  if (source.bad_lines > kMostBadLines)
+  if (source.bad_lines > kMaxBadLines)
     faults_.push_back(
         {streams_[stream].name, FaultKind::Corrupt, 0.0,
          fmt::format("{} left out; {} in all.",
-                     counted(source.bad_lines - kMostBadLines, "more line", "is", "are"), source.bad_lines)});
+                     counted(source.bad_lines - kMaxBadLines, "more line", "is", "are"), source.bad_lines)});
   if (source.other_types > 0)
     faults_.push_back({streams_[stream].name, FaultKind::Triggers, 0.0,
                        counted(source.other_types, "line", "is", "are") +
@@ -353,7 +353,7 @@ bool TextTableReader::parseImu(const Source& source, std::string_view line, RawI
 }
 
 void TextTableReader::addBadLine(Source& source, std::size_t stream) {
-  if (++source.bad_lines > kMostBadLines) return;
+  if (++source.bad_lines > kMaxBadLines) return;
   const std::string time = timeOutOfRange(parts_, source.columns);
   if (!time.empty()) {
     faults_.push_back({streams_[stream].name, FaultKind::Unit, 0.0,

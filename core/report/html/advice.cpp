@@ -96,10 +96,10 @@ void adviseCoverage(const std::string& name, const CameraMeasures& camera, std::
 
 void adviseLens(const std::string& name, const CameraMeasures& camera, const CameraFit& fit,
                 std::vector<Advice>& all) {
-  constexpr int kLeast = 50;
+  constexpr int kMin = 50;
   double largest_px = 0.0;
   for (const SensorCell& cell : camera.cells)
-    if (cell.residuals >= kLeast) largest_px = std::max(largest_px, cell.mean_residual_px.norm());
+    if (cell.residuals >= kMin) largest_px = std::max(largest_px, cell.mean_residual_px.norm());
   constexpr double kBias_px = 0.1;
   if (largest_px > std::max(kBias_px, 0.7 * fit.reprojection_rms_px))
     all.push_back({"Calibrate the intrinsics again: the lens model does not fit the whole image.",

@@ -35,9 +35,9 @@ PlotTable timelineTable(const BoardObservations& camera, std::size_t index) {
 }
 
 PlotTable circlesTable(const BoardObservations& camera, std::size_t index) {
-  constexpr std::size_t kMost = 1500;
+  constexpr std::size_t kMax = 1500;
   PlotTable counts(fmt::format("plots/camera{}_windows.csv", index + 1), {"time_s", "circles", "candidates"});
-  const std::size_t stride = strideFor(camera.windows.size(), kMost);
+  const std::size_t stride = strideFor(camera.windows.size(), kMax);
   for (std::size_t i = 0; i < camera.windows.size(); i += stride) {
     const WindowReport& window = camera.windows[i];
     counts.add({window.time_s, static_cast<double>(window.circles), static_cast<double>(window.candidates)});
@@ -103,10 +103,10 @@ PlotTable cellTable(const CameraMeasures& camera, std::size_t index) {
 }
 
 void writeImageCoverage(const CameraMeasures& camera, std::size_t index, ReportPage& page) {
-  constexpr std::size_t kMost = 4000;
+  constexpr std::size_t kMax = 4000;
   if (!camera.resolution_px.known()) return;
   PlotTable centres(fmt::format("plots/camera{}_centres.csv", index + 1), {"x_px", "y_px"});
-  for (std::size_t i = 0; i < camera.centres_px.size(); i += strideFor(camera.centres_px.size(), kMost))
+  for (std::size_t i = 0; i < camera.centres_px.size(); i += strideFor(camera.centres_px.size(), kMax))
     centres.add({camera.centres_px[i].x(), camera.centres_px[i].y()});
   SvgPlot scatter(imageFrame(camera.resolution_px.width_px, camera.resolution_px.height_px,
                              "circle centres over the image"));
@@ -127,7 +127,7 @@ void writeImageCoverage(const CameraMeasures& camera, std::size_t index, ReportP
       scatter.svg(),
       fmt::format(
           "Measured circle centres (one in {} shown). In empty corners the lens model is not verified.",
-          strideFor(camera.centres_px.size(), kMost)),
+          strideFor(camera.centres_px.size(), kMax)),
       &centres);
   page.figure(map.svg(),
               fmt::format("Number of circles in each part of the image: {} % of the parts have at least one.",
@@ -154,11 +154,11 @@ SvgPlot angleScatter(const PlotTable& poses, std::size_t a, std::size_t b, const
 }
 
 void writeBoardPoses(const CameraMeasures& camera, std::size_t index, ReportPage& page) {
-  constexpr std::size_t kMost = 2000;
+  constexpr std::size_t kMax = 2000;
   if (camera.poses.empty()) return;
   PlotTable poses(fmt::format("plots/camera{}_board_poses.csv", index + 1),
                   {"time_s", "distance_m", "tilt_x_deg", "tilt_y_deg", "turn_deg"});
-  for (std::size_t i = 0; i < camera.poses.size(); i += strideFor(camera.poses.size(), kMost)) {
+  for (std::size_t i = 0; i < camera.poses.size(); i += strideFor(camera.poses.size(), kMax)) {
     const BoardPose& pose = camera.poses[i];
     poses.add({pose.time_s, pose.distance_m, pose.tilt_x_deg, pose.tilt_y_deg, pose.turn_deg});
   }

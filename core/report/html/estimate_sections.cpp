@@ -158,13 +158,13 @@ void writeCost(const PlotTable& table, ReportPage& page) {
 void writeDistances(const ReportData& data, std::size_t camera, ReportPage& page) {
   const PlotTable table = distanceTable(data.named.result->iterations, camera);
   PlotFrame frame = iterationFrame(table, "difference from the final values", "distance");
-  constexpr double kLeast = 1e-6;
-  frame.y = rangeOf(decades(table.values[1], kLeast));
-  for (std::size_t k = 2; k <= 3; ++k) frame.y = joined(frame.y, rangeOf(decades(table.values[k], kLeast)));
+  constexpr double kMin = 1e-6;
+  frame.y = rangeOf(decades(table.values[1], kMin));
+  for (std::size_t k = 2; k <= 3; ++k) frame.y = joined(frame.y, rangeOf(decades(table.values[k], kMin)));
   frame.y_decades = true;
   SvgPlot plot(frame);
   for (std::size_t k = 1; k <= 3; ++k)
-    plot.line(table.values[0], decades(table.values[k], kLeast), fmt::format("c{}", k - 1));
+    plot.line(table.values[0], decades(table.values[k], kMin), fmt::format("c{}", k - 1));
   plot.legend({{"c0", "translation [mm]"}, {"c1", "rotation [deg]"}, {"c2", "time [ms]"}});
   page.figure(
       plot.svg(),

@@ -63,8 +63,8 @@ std::string plain(double value) {
   return std::isfinite(value) ? signedText(fmt::format("{:.4g}", value)) : kNothing;
 }
 
-std::string withSigma(double value, double sigma, int most_decimals) {
-  const int decimals = decimalsFor(sigma, most_decimals, std::min(most_decimals, 4));
+std::string withSigma(double value, double sigma, int max_decimals) {
+  const int decimals = decimalsFor(sigma, max_decimals, std::min(max_decimals, 4));
   if (!std::isfinite(sigma) || !(sigma > 0.0)) return number(value, decimals);
   return fmt::format("{} <span class=\"pm\">\u00b1 {}</span>", number(value, decimals),
                      number(sigma, decimals));

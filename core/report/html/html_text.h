@@ -20,7 +20,7 @@ std::string significant(double value, int digits = 3);
 // Shortest text of a given number: "0.1", "20".
 std::string plain(double value);
 // "12.345 ± 0.012": as many decimals as the sigma's second digit; sigma 0 or unknown: the value alone.
-std::string withSigma(double value, double sigma, int most_decimals = 6);
+std::string withSigma(double value, double sigma, int max_decimals = 6);
 
 std::string element(std::string_view tag, std::string_view css_class, std::string_view content);
 std::string paragraph(std::string_view css_class, std::string_view escaped_text);

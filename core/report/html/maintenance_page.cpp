@@ -18,7 +18,7 @@ namespace html {
 namespace {
 
 constexpr std::array<const char*, 3> kPartColours = {"c0", "c1", "c2"};
-constexpr std::size_t kMostPoints = 2000;  // of a plot; the CSV file of the maintenance has all
+constexpr std::size_t kMaxPoints = 2000;  // of a plot; the CSV file of the maintenance has all
 
 void writeSteps(const Maintenance& maintenance, ReportPage& page) {
   if (maintenance.steps.empty()) return;
@@ -41,7 +41,7 @@ void drawTracked(const MaintenanceTrack& track, const TrackedQuantity& quantity,
     names.push_back("std of " + names.back());
   }
   PlotTable plotted(file, names);
-  const std::size_t stride = strideFor(track.times_s.size(), kMostPoints);
+  const std::size_t stride = strideFor(track.times_s.size(), kMaxPoints);
   for (std::size_t k = 0; k < track.times_s.size(); k += stride) {
     std::vector<double> row = {track.times_s[k]};
     for (const TrackedNumber& each : quantity.numbers) {

@@ -24,9 +24,9 @@ std::vector<CircleResidual> usedResiduals(const ReportData& data, std::size_t ca
 
 void writeScatter(const std::vector<CircleResidual>& residuals, std::size_t index, double rms_px,
                   ReportPage& page) {
-  constexpr std::size_t kMost = 3000;
+  constexpr std::size_t kMax = 3000;
   PlotTable scatter(fmt::format("plots/camera{}_residuals.csv", index + 1), {"time_s", "dx_px", "dy_px"});
-  for (std::size_t i = 0; i < residuals.size(); i += strideFor(residuals.size(), kMost))
+  for (std::size_t i = 0; i < residuals.size(); i += strideFor(residuals.size(), kMax))
     scatter.add({residuals[i].time_s, residuals[i].residual_px.x(), residuals[i].residual_px.y()});
   PlotFrame frame;
   frame.title = "reprojection residuals";
@@ -45,19 +45,19 @@ void writeScatter(const std::vector<CircleResidual>& residuals, std::size_t inde
       plot.svg(),
       fmt::format(
           "One in {} circles; the ring is the RMS, {} px. The distribution should be round and centred.",
-          strideFor(residuals.size(), kMost), significant(rms_px)),
+          strideFor(residuals.size(), kMax), significant(rms_px)),
       &scatter);
   page.keep(scatter);
 }
 
 void writeBias(const CameraMeasures& camera, std::size_t index, ReportPage& page) {
-  constexpr int kLeast = 20;  // fewest circles for a mean
+  constexpr int kMin = 20;  // fewest circles for a mean
   if (camera.cells.empty()) return;
   PlotTable bias(fmt::format("plots/camera{}_bias.csv", index + 1),
                  {"x_px", "y_px", "dx_px", "dy_px", "circles"});
   double largest_px = 1e-6;
   for (const SensorCell& cell : camera.cells) {
-    if (cell.residuals < kLeast) continue;
+    if (cell.residuals < kMin) continue;
     const Eigen::Vector2d middle = 0.5 * (cell.low_px + cell.high_px);
     bias.add({middle.x(), middle.y(), cell.mean_residual_px.x(), cell.mean_residual_px.y(),
               static_cast<double>(cell.residuals)});
@@ -88,7 +88,7 @@ void writeBias(const CameraMeasures& camera, std::size_t index, ReportPage& page
 }
 
 void writePerWindow(const std::vector<CircleResidual>& residuals, std::size_t index, ReportPage& page) {
-  constexpr std::size_t kMost = 2000;
+  constexpr std::size_t kMax = 2000;
   struct Sum {
     double time_s = 0.0, squares = 0.0;
     int count = 0;
@@ -103,7 +103,7 @@ void writePerWindow(const std::vector<CircleResidual>& residuals, std::size_t in
   PlotTable windows(fmt::format("plots/camera{}_rms_per_window.csv", index + 1),
                     {"time_s", "rms_px", "circles"});
   std::size_t i = 0;
-  const std::size_t stride = strideFor(views.size(), kMost);
+  const std::size_t stride = strideFor(views.size(), kMax);
   for (const auto& [view, sum] : views) {
     if (i++ % stride == 0)
       windows.add(
@@ -136,11 +136,11 @@ struct Signal {
 };
 
 PlotTable signalTable(const Signal& signal, const std::vector<double>& time_s) {
-  constexpr std::size_t kMost = 1500;
+  constexpr std::size_t kMax = 1500;
   PlotTable table(fmt::format("plots/{}.csv", signal.file),
                   {"time_s", "x_measured", "y_measured", "z_measured", "x_spline", "y_spline", "z_spline",
                    "x_residual", "y_residual", "z_residual"});
-  for (std::size_t i = 0; i < time_s.size(); i += strideFor(time_s.size(), kMost)) {
+  for (std::size_t i = 0; i < time_s.size(); i += strideFor(time_s.size(), kMax)) {
     const Eigen::Vector3d &m = signal.measured[i], &p = signal.predicted[i];
     table.add(
         {time_s[i], m.x(), m.y(), m.z(), p.x(), p.y(), p.z(), m.x() - p.x(), m.y() - p.y(), m.z() - p.z()});

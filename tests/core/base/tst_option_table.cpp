@@ -12,7 +12,7 @@ struct SampleOptions {
   double error_s;
   bool quick;
   Method method;
-  double least_part, most_part;
+  double min_part, max_part;
   int first, last;
 
   SampleOptions();
@@ -32,15 +32,15 @@ constexpr std::tuple kSampleFields{
     Switch{"quick", &SampleOptions::quick, false, "Quick."},
     Choice{"method", &SampleOptions::method, Method::RingVote, std::array{"ring_vote", "normal_flow"},
            "Method."},
-    Field{"least_part", &SampleOptions::least_part, 0.25, within(0.0, 1.0), "", "Least."},
-    Field{"most_part", &SampleOptions::most_part, 0.5, within(0.0, 1.0), "", "Most."},
+    Field{"min_part", &SampleOptions::min_part, 0.25, within(0.0, 1.0), "", "Least."},
+    Field{"max_part", &SampleOptions::max_part, 0.5, within(0.0, 1.0), "", "Most."},
     Field{"first", &SampleOptions::first, 1, within(0, 9), "px", "First."},
     Field{"last", &SampleOptions::last, 1, within(0, 9), "px", "Last."}};
 constexpr auto kSampleDefaults = defaultsOf<SampleOptions, kSampleFields>();
 SampleOptions::SampleOptions() : SampleOptions(kSampleDefaults) {}
 
 const OptionTable<SampleOptions> kTable(kSampleFields,
-                                        Ordered{&SampleOptions::least_part, &SampleOptions::most_part},
+                                        Ordered{&SampleOptions::min_part, &SampleOptions::max_part},
                                         Ordered{&SampleOptions::first, &SampleOptions::last});
 
 }  // namespace
@@ -126,8 +126,8 @@ class TestOptionTable : public QObject {
     QFETCH(double, most);
     QFETCH(bool, fits);
     SampleOptions options;
-    options.least_part = least;
-    options.most_part = most;
+    options.min_part = least;
+    options.max_part = most;
     if (fits) return kTable.checkOrder(options, "g");
     QVERIFY_THROWS_EXCEPTION(OptionConflict, kTable.checkOrder(options, "g"));
   }

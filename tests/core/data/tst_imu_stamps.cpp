@@ -104,9 +104,9 @@ namespace {
 void TestImuStamps::coarseStamps_becomeSteadyTimes_data() {
   QTest::addColumn<Stamped>("stamped");
   QTest::addColumn<double>("step_ms");
-  QTest::addColumn<double>("most_ms");  // scatter that is left; that of stamps is 0.29 steps
-  const auto row = [](const char* name, const Stamped& stamped, double step_ms, double most_ms) {
-    QTest::newRow(name) << stamped << step_ms << most_ms;
+  QTest::addColumn<double>("max_ms");  // scatter that is left; that of stamps is 0.29 steps
+  const auto row = [](const char* name, const Stamped& stamped, double step_ms, double max_ms) {
+    QTest::newRow(name) << stamped << step_ms << max_ms;
   };
   row("10 ms at 200 Hz", {.stamp = rounded(0.01)}, 10.0, 0.1);
   row("10 ms, down", {.stamp = down(0.01)}, 10.0, 0.1);
@@ -135,7 +135,7 @@ void TestImuStamps::coarseStamps_becomeSteadyTimes_data() {
 void TestImuStamps::coarseStamps_becomeSteadyTimes() {
   QFETCH(Stamped, stamped);
   QFETCH(double, step_ms);
-  QFETCH(double, most_ms);
+  QFETCH(double, max_ms);
   std::vector<double> times_s;
   Samples samples = stamped.samples(times_s);
   const Samples before = samples;
@@ -144,8 +144,7 @@ void TestImuStamps::coarseStamps_becomeSteadyTimes() {
            qPrintable(QString::number(found.step_s)));
   QVERIFY(found.reconstructed);
   const double left_ms = scatter_ms(samples, times_s);
-  QVERIFY2(left_ms < most_ms,
-           qPrintable(QString("%1, was %2").arg(left_ms).arg(scatter_ms(before, times_s))));
+  QVERIFY2(left_ms < max_ms, qPrintable(QString("%1, was %2").arg(left_ms).arg(scatter_ms(before, times_s))));
   for (std::size_t i = 0; i < samples.size(); ++i) {
     QVERIFY(std::abs(secondsSince(before[i].time_ns, samples[i].time_ns)) < 0.51 * found.step_s);
     QVERIFY(i == 0 || samples[i].time_ns > samples[i - 1].time_ns);

@@ -126,8 +126,8 @@ class TestExportReadBack : public QObject {
     const ReadBack read = row.read((folder.path() + "/" + target).toStdString());
     const ReadBackDifference difference = differenceOf(result, read);
     QVERIFY2(difference.problems.empty(), difference.problems.empty() ? "" : difference.problems[0].c_str());
-    QCOMPARE(difference.cameras, std::min(result.cameras.size(), read.most_cameras));
-    QVERIFY(difference.imus <= std::min(result.imus.size(), read.most_imus));
+    QCOMPARE(difference.cameras, std::min(result.cameras.size(), read.max_cameras));
+    QVERIFY(difference.imus <= std::min(result.imus.size(), read.max_imus));
     QVERIFY(difference.lens_px || difference.refitted_px);
     // Only the rounding of the files.
     double rounding = 0.0, step_s = 0.0;
@@ -162,7 +162,7 @@ class TestExportReadBack : public QObject {
     const std::filesystem::path path = folder.path().toStdString();
     const ReadBack read = row.read(path / row.name);
     const ReadBackDifference same = differenceOf(result, read);
-    const std::size_t last = std::min(result.cameras.size(), read.most_cameras) - 1;
+    const std::size_t last = std::min(result.cameras.size(), read.max_cameras) - 1;
     const auto found = [&](auto&& change) {
       NamedResult other = result;
       change(ownResult(other).state);

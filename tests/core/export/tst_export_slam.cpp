@@ -121,16 +121,16 @@ DsoCamera dsoCamera(const std::string& text) {
 
 // Smallest distance of the outer pixels of the rectified image from the border of the camera's image, in px.
 // Below 0: outside.
-double leastMargin_px(const DsoCamera& camera) {
-  double least_px = 1e9;
+double minMargin_px(const DsoCamera& camera) {
+  double min_px = 1e9;
   for (int y = 0; y < camera.out_height_px; ++y)
     for (int x = 0; x < camera.out_width_px; ++x) {
       if (y > 0 && y < camera.out_height_px - 1 && x > 0 && x < camera.out_width_px - 1) continue;
       const Eigen::Vector2d pixel = camera.lens(camera.rayOf(x, y));
-      least_px = std::min({least_px, pixel.x(), pixel.y(), camera.width_px - 1.0 - pixel.x(),
-                           camera.height_px - 1.0 - pixel.y()});
+      min_px = std::min({min_px, pixel.x(), pixel.y(), camera.width_px - 1.0 - pixel.x(),
+                         camera.height_px - 1.0 - pixel.y()});
     }
-  return least_px;
+  return min_px;
 }
 
 // introlab/rtabmap, corelib/src/CameraModel.cpp at 191e165, CameraModel::load.
@@ -293,7 +293,7 @@ class TestExportSlam : public QObject {
     // globalCalib.cpp: three halvings at least, of more than 5000 px.
     QVERIFY(camera.out_width_px % 16 == 0 && camera.out_height_px % 16 == 0);
     QVERIFY(camera.out_width_px > 346 - 16 && camera.out_height_px > 260 - 16);
-    const double margin_px = leastMargin_px(camera);
+    const double margin_px = minMargin_px(camera);
     QVERIFY2(margin_px > 0.0 && margin_px < 3.0, qPrintable(QString::number(margin_px)));
   }
 
@@ -307,7 +307,7 @@ class TestExportSlam : public QObject {
     const DsoCamera camera = dsoCamera(contentOf(exportTo(result, "dm-vio"), "dm-vio/camera.txt"));
     const Eigen::Vector2d beyond = camera.lens({1.9, 0.0, 1.0});
     QVERIFY2(beyond.x() > 0.0 && beyond.x() < 345.0, "this lens does not fold");
-    QVERIFY(leastMargin_px(camera) > 0.0);
+    QVERIFY(minMargin_px(camera) > 0.0);
     for (const double x_px : {0.0, camera.out_width_px - 1.0})
       for (const double y_px : {0.0, camera.out_height_px - 1.0})
         QVERIFY(project(own, camera.rayOf(x_px, y_px)).has_value());

@@ -79,7 +79,7 @@ void TestBlink::rhythm_isFoundInNoise() {
   QVERIFY(blink);
   // A bin is 1 ms; the parabola locates the top of a narrow peak to some tenths of a bin.
   QVERIFY2(std::abs(blink->period_s - 1.0 / rate_hz) < 4e-4, QByteArray::number(1.0 / blink->period_s));
-  QVERIFY(blink->peak > BlinkOptions{}.least_peak);
+  QVERIFY(blink->peak > BlinkOptions{}.min_peak);
 }
 
 void TestBlink::noiseAndSlowChanges_haveNoRhythm() {
@@ -90,7 +90,7 @@ void TestBlink::noiseAndSlowChanges_haveNoRhythm() {
   std::partial_sum(noise.begin(), noise.end(), walk.begin());
   for (const auto& signal : {noise, walk}) {
     const std::optional<Blink> blink = findBlink(signal, BlinkOptions{});
-    QVERIFY(!blink || blink->peak < BlinkOptions{}.least_peak);
+    QVERIFY(!blink || blink->peak < BlinkOptions{}.min_peak);
   }
   QVERIFY(!findBlink({}, BlinkOptions{}));
 }
@@ -138,7 +138,7 @@ void TestBlink::lampThatMakesFewEvents_isNotNoticed() {
   notice.add(blinkingScene(1, 100.0, 1.0, 60000.0));  // 6000 of 66000 events
   notice.finish();
   QVERIFY(!notice.blink());
-  QVERIFY(notice.clearest().share < BlinkOptions{}.least_share);
+  QVERIFY(notice.clearest().share < BlinkOptions{}.min_share);
 }
 
 void TestBlink::halfPeriods_beginWithTheirBursts_data() {

@@ -146,7 +146,7 @@ void TestBoardFinder::rendered_isFoundWithErrorsAsStated() {
   const Board& board = printed.board;
   const CameraIntrinsics camera = distortingCamera();
   FrameOptions options;
-  options.smallest_sigma_px = 0.005;
+  options.min_sigma_px = 0.005;
   BoardFinder finder(board, options);
   BoardFinderErrors errors;
   int possible = 0;

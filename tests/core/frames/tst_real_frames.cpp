@@ -46,7 +46,7 @@ Calibrated calibrate(const QDir& folder, const QString& pattern) {
   const BoardObservations seen = tracker.finish();
   calibrated.found = static_cast<int>(seen.views.size());
   IntrinsicsOptions options;
-  options.least_views = 5;
+  options.min_views = 5;
   calibrated.result = estimateIntrinsics({board, size, seen, {}, {}}, options, {});
   const IntrinsicsResult& r = calibrated.result;
   qInfo("%d of %d found, f %.2f %.2f, c %.2f %.2f, k1 %.4f k2 %.4f, %.3f px RMS, normalised %.2f, %s",

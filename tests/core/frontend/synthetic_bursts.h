@@ -151,7 +151,7 @@ inline std::vector<EdgeCrossing> burstsOf(const MovingBoard& moving, double half
       images.push_back(moving.imageAt(i, half_window_s * (2.0 * k / kSteps - 1.0)));
     const Eigen::Vector2d velocity = moving.velocityAt(i, 0.0);
     const CircleImage& middle = images[kSteps / 2];
-    const double reach = middle.largest_radius_px + velocity.norm() * half_window_s + 2.0;
+    const double reach = middle.max_radius_px + velocity.norm() * half_window_s + 2.0;
     for (int y = static_cast<int>(middle.centre_px.y() - reach); y <= middle.centre_px.y() + reach; ++y) {
       for (int x = static_cast<int>(middle.centre_px.x() - reach); x <= middle.centre_px.x() + reach; ++x) {
         if (x < 0 || y < 0 || x >= kDavis_px.width_px || y >= kDavis_px.height_px) continue;

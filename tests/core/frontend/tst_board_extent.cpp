@@ -68,7 +68,7 @@ std::vector<SyntheticCircle> discsBeside(const MovingBoard& moving, std::mt19937
       const Eigen::Vector2d velocity_px_s = moving.motionAt(0.0).velocityAt(place->centre_px);
       discs.push_back({place->centre_px + 2.0 * Eigen::Vector2d(uniform(random), uniform(random)),
                        (1.0 + 0.1 * uniform(random)) * velocity_px_s,
-                       (1.0 + 0.1 * uniform(random)) * place->largest_radius_px});
+                       (1.0 + 0.1 * uniform(random)) * place->max_radius_px});
     }
   return discs;
 }

@@ -54,7 +54,7 @@ void TestBoardMotion::imageOfCircle_holdsImagesOfItsPoints() {
       QVERIFY(std::abs(distanceToEdge(image, apply(h, point)).distance_px) < 1e-8);
       largest_px = std::max(largest_px, q.norm());
     }
-    QVERIFY(std::abs(largest_px - image.largest_radius_px) < 0.01);
+    QVERIFY(std::abs(largest_px - image.max_radius_px) < 0.01);
   }
 }
 
@@ -76,14 +76,14 @@ void TestBoardMotion::sensorPixels_followDistortion() {
   const auto image = imageOfCircle(moving.homographyAt(0.0), BoardScene(moving.board, kDavis_px, camera), 0);
   QVERIFY(image.has_value());
   QVERIFY((image->sensor_centre_px - pixelFromIdeal(camera, image->centre_px)).norm() < 1e-9);
-  QVERIFY(image->sensor_radius_px < image->largest_radius_px);  // barrel distortion shrinks the border
+  QVERIFY(image->sensor_radius_px < image->max_radius_px);  // barrel distortion shrinks the border
 }
 
 void TestBoardMotion::distanceToEdge_isThatOfTheCircle() {
   CircleImage image;
   image.centre_px = {100.0, 80.0};
   image.shape = Eigen::Matrix2d::Identity() / 81.0;
-  image.largest_radius_px = 9.0;
+  image.max_radius_px = 9.0;
   for (const double distance_px : {-3.0, -0.5, 0.0, 0.5, 4.0}) {
     const Eigen::Vector2d n = Eigen::Vector2d(3.0, 4.0) / 5.0;
     const EdgeDistance edge = distanceToEdge(image, image.centre_px + (9.0 + distance_px) * n);
@@ -166,9 +166,9 @@ void TestBoardMotion::insideImage_wantsTheWholeCircle() {
 void TestBoardMotion::crossingWeight_leavesOutGrazingEdges() {
   const TrackingOptions options;
   QCOMPARE(crossingWeight(1.0, 8.0, 8.0, options), 1.0);
-  QCOMPARE(crossingWeight(0.9 * options.least_polarity_cosine, 8.0, 8.0, options), 0.0);
+  QCOMPARE(crossingWeight(0.9 * options.min_polarity_cosine, 8.0, 8.0, options), 0.0);
   QCOMPARE(crossingWeight(-1.0, 8.0, 8.0, options), 0.0);
-  QCOMPARE(crossingWeight(1.0, 0.9 * options.least_event_part * 8.0, 8.0, options), 0.0);
+  QCOMPARE(crossingWeight(1.0, 0.9 * options.min_event_part * 8.0, 8.0, options), 0.0);
   QCOMPARE(crossingWeight(1.0, 1.0, 0.0, options), 1.0);  // typical value not known yet
 }
 
@@ -219,7 +219,7 @@ void TestBoardMotion::fit_measuresRadiusOffset() {
   const auto fit =
       fitBoardMotion(synthetic.window, moving.motionAt(0.0), moving.scene(), options.first_gate_px, options);
   QVERIFY(fit.has_value());
-  const double expected_px = 0.05 * moving.imageAt(21, 0.0).largest_radius_px;
+  const double expected_px = 0.05 * moving.imageAt(21, 0.0).max_radius_px;
   QVERIFY2(std::abs(fit->radius_offset_px - expected_px) < 0.05,
            qPrintable(QString::number(fit->radius_offset_px)));
 }

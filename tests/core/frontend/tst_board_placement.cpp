@@ -52,7 +52,7 @@ BoardImage imageOf(const Board& board, double noise_px, std::mt19937& random) {
     circle.centre_px =
         moving.imageAt(i, 0.0).centre_px + noise_px * test::randomVector<2>([&] { return normal(random); });
     circle.velocity_px_s = moving.velocityAt(i, 0.0);
-    circle.radius_px = moving.imageAt(i, 0.0).largest_radius_px;
+    circle.radius_px = moving.imageAt(i, 0.0).max_radius_px;
     image.add(circle, i);
   }
   return image;
@@ -97,7 +97,7 @@ std::vector<BoardPlacement> place(const BoardImage& image, CircleLattice* lattic
   const GridOptions options;
   const CircleLattice found = findCircleLattice(image.circles, options);
   if (lattice) *lattice = found;
-  if (static_cast<int>(found.size()) < options.least_circles) return {};
+  if (static_cast<int>(found.size()) < options.min_circles) return {};
   return placeOnBoard(found, image.circles, BoardScene(image.board, kDavis_px, camera), 0, options);
 }
 

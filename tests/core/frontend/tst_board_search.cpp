@@ -77,9 +77,9 @@ void TestBoardSearch::ended_isTheStageThatFailed() {
   FrontEndOptions options;
   options.detection.try_both = false;
   BoardScene scene = MovingBoard().scene();
-  if (what == "bursts") options.detection.least_window_bursts = 100000;
-  if (what == "circles") options.grid.least_circles = 500;
-  if (what == "lattice") options.grid.longest_step_radii = 2.1;
+  if (what == "bursts") options.detection.min_window_bursts = 100000;
+  if (what == "circles") options.grid.min_circles = 500;
+  if (what == "lattice") options.grid.max_step_radii = 2.1;
   if (what == "placement") {
     // A camera whose image has no square lattice.
     CameraIntrinsics camera;
@@ -99,7 +99,7 @@ void TestBoardSearch::ended_isTheStageThatFailed() {
 void TestBoardSearch::otherSource_isTriedWhereTheFirstFails() {
   FrontEndOptions options;
   options.detection.method = CandidateSource::NormalFlow;
-  options.normal_flow.least_cluster_px = 10000;
+  options.normal_flow.min_cluster_px = 10000;
   const std::vector<BoardSearch> both = searchBoard(history(), 0, MovingBoard().scene(), options);
   QCOMPARE(both.size(), std::size_t{2});
   QCOMPARE(both[0].source, CandidateSource::NormalFlow);

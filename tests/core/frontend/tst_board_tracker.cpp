@@ -199,7 +199,7 @@ QString toText(const Numbering& n) {
 void TestBoardTracker::boardLaidWrongly_isLaidAnewWithAllItsViews_data() {
   QTest::addColumn<int>("seed");
   QTest::addColumn<double>("duration_s");
-  QTest::addColumn<int>("least_views");
+  QTest::addColumn<int>("min_views");
   for (const int seed : {1, 2, 3}) {
     QTest::addRow("seed %d, long after", seed) << seed << 1.5 << 30;
     QTest::addRow("seed %d, a few windows after", seed) << seed << 0.55 << 8;
@@ -209,9 +209,9 @@ void TestBoardTracker::boardLaidWrongly_isLaidAnewWithAllItsViews_data() {
 void TestBoardTracker::boardLaidWrongly_isLaidAnewWithAllItsViews() {
   QFETCH(int, seed);
   QFETCH(double, duration_s);
-  QFETCH(int, least_views);
+  QFETCH(int, min_views);
   const Numbering n = numbering(static_cast<std::uint64_t>(seed), duration_s);
-  QVERIFY2(n.views > static_cast<std::size_t>(least_views), qPrintable(toText(n)));
+  QVERIFY2(n.views > static_cast<std::size_t>(min_views), qPrintable(toText(n)));
   QVERIFY2(n.wrong == 0, qPrintable(toText(n)));
 }
 

@@ -102,11 +102,11 @@ void TestCircleLattice::outlier_isNoMember() {
 void TestCircleLattice::neighbours_areWithinTheOptionsSteps() {
   const std::vector<MovingCircle> circles = square(3, 3);  // 3 radii apart
   GridOptions options;
-  options.longest_step_radii = 2.9;
+  options.max_step_radii = 2.9;
   QVERIFY(findCircleLattice(circles, options).empty());
-  options.longest_step_radii = 3.1;
+  options.max_step_radii = 3.1;
   QCOMPARE(findCircleLattice(circles, options).size(), std::size_t{9});
-  options.shortest_step_radii = 3.05;
+  options.min_step_radii = 3.05;
   QVERIFY(findCircleLattice(circles, options).empty());
 }
 

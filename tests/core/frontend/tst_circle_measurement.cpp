@@ -43,7 +43,7 @@ void TestCircleMeasurement::withoutNoise_centresAreExact() {
     QVERIFY2((circle.centre_px - truth.centre_px).norm() < 0.02,
              qPrintable(QString::number((circle.centre_px - truth.centre_px).norm())));
     QVERIFY((circle.velocity_px_s - moving.velocityAt(circle.circle, circle.time_s)).norm() < 1.0);
-    QVERIFY(std::abs(circle.semi_axes_px.x() - truth.largest_radius_px) < 0.05);
+    QVERIFY(std::abs(circle.semi_axes_px.x() - truth.max_radius_px) < 0.05);
     QVERIFY(circle.semi_axes_px.x() >= circle.semi_axes_px.y());
   }
 }
@@ -92,8 +92,7 @@ void TestCircleMeasurement::circlesWithoutBursts_areLeftOut() {
   std::erase_if(bursts, [&](const EdgeCrossing& burst) {
     return std::any_of(hidden.begin(), hidden.end(), [&](int i) {
       const CircleImage image = moving.imageAt(i, 0.0);
-      return (Eigen::Vector2d(burst.x_px, burst.y_px) - image.centre_px).norm() <
-             image.largest_radius_px + 3.0;
+      return (Eigen::Vector2d(burst.x_px, burst.y_px) - image.centre_px).norm() < image.max_radius_px + 3.0;
     });
   });
   std::set<int> found;

@@ -70,7 +70,7 @@ void TestEdgeBursts::pause_endsBurst_data() {
   QTest::addColumn<double>("pause_ms");
   QTest::addColumn<int>("bursts");
   const BurstOptions options;
-  const double longest_ms = 1e3 * options.longest_gap_s, shortest_ms = 1e3 * options.shortest_gap_s;
+  const double longest_ms = 1e3 * options.max_gap_s, shortest_ms = 1e3 * options.min_gap_s;
   QTest::newRow("longer than any") << 15.0 << 1.1 * longest_ms << 2;
   QTest::newRow("slow edge, ordinary pause") << 30.0 << 0.9 * longest_ms << 1;
   QTest::newRow("fast edge, long for its pace") << 1.0 << 1.5 * options.gap_to_pace << 2;
@@ -90,7 +90,7 @@ void TestEdgeBursts::pause_endsBurst() {
 
 void TestEdgeBursts::singleEvents_areDropped() {
   BurstOptions options;
-  options.least_events = 3;
+  options.min_events = 3;
   QVERIFY(allBursts(eventsAt(0, 0, true, {0, kMs}), options).empty());
   QCOMPARE(allBursts(eventsAt(0, 0, true, {0, kMs, 2 * kMs}), options).size(), 1u);
 }
@@ -115,7 +115,7 @@ void TestEdgeBursts::steadyFlicker_isCut() {
   for (int k = 0; k < 1000; ++k) times_ns.push_back(k * kMs);
   const BurstOptions options;
   for (const EdgeCrossing& burst : allBursts(eventsAt(0, 0, true, times_ns)))
-    QVERIFY(burst.duration_ns <= static_cast<std::int64_t>(options.longest_burst_s * 1e9));
+    QVERIFY(burst.duration_ns <= static_cast<std::int64_t>(options.max_burst_s * 1e9));
 }
 
 void TestEdgeBursts::silentPixel_isHandedOutWithoutNewEvents() {

@@ -114,9 +114,9 @@ void TestEventClusters::polarities_areApart() {
 
 void TestEventClusters::smallClusters_areDropped() {
   NormalFlowOptions options;
-  options.least_cluster_px = 13;
+  options.min_cluster_px = 13;
   QVERIFY(clusterFlow(block(100, 2, true), kDavis_px, options).empty());
-  options.least_cluster_px = 12;
+  options.min_cluster_px = 12;
   QCOMPARE(clusterFlow(block(100, 2, true), kDavis_px, options).size(), 1u);
 }
 

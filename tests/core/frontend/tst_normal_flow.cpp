@@ -126,7 +126,7 @@ void TestNormalFlow::lonelyPixels_giveNothing() {
   std::vector<EdgeCrossing> line;
   for (int x = 10; x < 40; ++x) line.push_back(burstAt(x, 10, 0.001 * x, true));
   NormalFlowOptions options;
-  options.least_plane_inliers = 0.3;
+  options.min_plane_inliers = 0.3;
   QVERIFY(flowOf(line, options).empty());  // a line of pixels does not determine a plane
 }
 
@@ -144,7 +144,7 @@ void TestNormalFlow::polarities_doNotMix() {
   for (EdgeCrossing& burst : bursts) burst.brighter = (burst.x_px + burst.y_px) % 2;
   // Each keeps 5 or 4 of 9 neighbours: too few with 6.
   NormalFlowOptions options;
-  options.least_plane_inliers = 0.6;
+  options.min_plane_inliers = 0.6;
   QVERIFY(flowOf(bursts, options).empty());
 }
 

@@ -13,13 +13,13 @@ using namespace evical;
 constexpr double kOffset_px = -0.56, kNoise_px = 0.005;
 
 // Windows with speeds of a hand-held camera, with pixels whose brightening edges are delayed by this.
-PolarityDelayFit windows(double later_s, double sign, int count, double least_px_s, double most_px_s,
+PolarityDelayFit windows(double later_s, double sign, int count, double min_px_s, double max_px_s,
                          unsigned seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, kNoise_px);
   PolarityDelayFit fit;
   for (int i = 0; i < count; ++i) {
-    const double speed = least_px_s + (most_px_s - least_px_s) * (0.5 + 0.5 * std::sin(0.7 * i));
+    const double speed = min_px_s + (max_px_s - min_px_s) * (0.5 + 0.5 * std::sin(0.7 * i));
     fit.add(speed, kOffset_px + 0.5 * sign * later_s * speed + noise(random));
   }
   return fit;
@@ -57,8 +57,8 @@ class TestPolarityDelay : public QObject {
 
   void whatCannotTell_saysNothing_data() {
     QTest::addColumn<int>("count");
-    QTest::addColumn<double>("least_px_s");
-    QTest::addColumn<double>("most_px_s");
+    QTest::addColumn<double>("min_px_s");
+    QTest::addColumn<double>("max_px_s");
     QTest::newRow("no window") << 0 << 30.0 << 150.0;
     QTest::newRow("few windows") << 10 << 30.0 << 150.0;
     QTest::newRow("one speed") << 500 << 60.0 << 61.0;
@@ -66,9 +66,9 @@ class TestPolarityDelay : public QObject {
   }
   void whatCannotTell_saysNothing() {
     QFETCH(int, count);
-    QFETCH(double, least_px_s);
-    QFETCH(double, most_px_s);
-    QVERIFY(!windows(2e-3, 1.0, count, least_px_s, most_px_s).result(CircleShade::Dark));
+    QFETCH(double, min_px_s);
+    QFETCH(double, max_px_s);
+    QVERIFY(!windows(2e-3, 1.0, count, min_px_s, max_px_s).result(CircleShade::Dark));
   }
 };
 

@@ -65,7 +65,7 @@ void TestRingVote::noise_givesFewCandidates() {
   std::mt19937 random(8);
   std::vector<EdgeCrossing> bursts;
   addRandomBursts(2000, kRingVoteHalfWindow_s, random, bursts);  // 2 % of the pixels
-  keepSupported(kDavis_px, RingVoteOptions{}.least_support, bursts);
+  keepSupported(kDavis_px, RingVoteOptions{}.min_support, bursts);
   const SyntheticWindow synthetic(bursts);
   QVERIFY(voteForCircles(synthetic.window, FrontEndOptions{}).size() < 20u);
 }

@@ -163,7 +163,7 @@ void TestWindowTrace::end_isTheFirstRuleThatFails() {
   TrackedBoard whole(allCircles);
   QCOMPARE(whole.track().ended, TrackingEnd::Held);
   QCOMPARE(whole.track().report.outcome, WindowOutcome::Complete);
-  whole.options.grid.least_circles = 45;  // of 44
+  whole.options.grid.min_circles = 45;  // of 44
   QCOMPARE(whole.track().ended, TrackingEnd::TooFewCircles);
   QCOMPARE(whole.track().report.outcome, WindowOutcome::RefinementFailed);
 
@@ -176,7 +176,7 @@ void TestWindowTrace::end_isTheFirstRuleThatFails() {
   TrackedBoard more([](int circle) { return circle < 24; });
   QCOMPARE(more.track().ended, TrackingEnd::Held);
   QCOMPARE(more.track().report.outcome, WindowOutcome::Partial);
-  more.options.grid.least_partial = 0.6;  // 26.4
+  more.options.grid.min_partial = 0.6;  // 26.4
   QCOMPARE(more.track().report.outcome, WindowOutcome::TooFewInGrid);
 
   TrackedBoard nothing([](int) { return false; });
@@ -214,7 +214,7 @@ void TestWindowTrace::viewToTrackFrom_isTheLastBefore() {
   BoardObservations observations;
   for (const double time_s : {1.0, 1.1, 1.3}) observations.views.push_back({time_s, ViewKind::Partial, {}});
   TrackingOptions options;
-  options.longest_gap_s = 0.25;
+  options.max_gap_s = 0.25;
   const auto from = [&](double time_s) {
     const BoardView* const view = viewToTrackFrom(observations, time_s, options);
     return view ? view->time_s : -1.0;

@@ -273,7 +273,7 @@ class TestCameraModel : public QObject {
   void rayAtAnyAngle_isSeenAtItsPixel() {
     QFETCH(int, index);
     const CameraIntrinsics c = wideCameras()[static_cast<std::size_t>(index)].camera;
-    double least_z = 1.0;
+    double min_z = 1.0;
     for (const Vector2d& pixel : pixels(c)) {
       const std::optional<Vector3d> ray = unprojectRay(c, pixel);
       if (!ray) continue;  // beyond the image circle
@@ -282,9 +282,9 @@ class TestCameraModel : public QObject {
       QVERIFY(seen);
       QVERIFY2((*seen - pixel).norm() < 1e-8, qPrintable(QString::number((*seen - pixel).norm())));
       QCOMPARE(unproject(c, pixel).has_value(), ray->z() > std::cos(85.0 * pi / 180.0));
-      least_z = std::min(least_z, ray->z());
+      min_z = std::min(min_z, ray->z());
     }
-    QVERIFY2(least_z < std::cos(95.0 * pi / 180.0), qPrintable(QString::number(least_z)));
+    QVERIFY2(min_z < std::cos(95.0 * pi / 180.0), qPrintable(QString::number(min_z)));
   }
 
   void directionBeyond90Degrees_isTheRayOfItsPixel_data() { wideRows(); }

@@ -58,7 +58,7 @@ class TestCameraImuRotation : public QObject {
     const SimulatedInput simulated = simulateInput(simulation);
     const auto hand_eye = handEyeOf(simulated, simulation.time_offset_s);
     QVERIFY(hand_eye.has_value());
-    QVERIFY(hand_eye->axis_ratio < InitialisationOptions().least_axis_ratio);
+    QVERIFY(hand_eye->axis_ratio < InitialisationOptions().min_axis_ratio);
     // The simulated camera rotates about its own y axis.
     const Eigen::Vector3d axis =
         simulated.truth.cameras[0].imu_from_camera.rotation * Eigen::Vector3d::UnitX();

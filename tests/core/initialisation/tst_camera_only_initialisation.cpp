@@ -157,7 +157,7 @@ class TestCamerasAlone : public QObject {
         (turns[turn] == 'r' ? reference : camera).push_back(pose);
       }
     InitialisationOptions options;
-    options.least_bridges = 2;
+    options.min_bridges = 2;
     const auto bridged = bridgeCameras(reference, camera, KnownNumber{0.0}, options, {});
     QVERIFY(bridged.has_value());
     QCOMPARE(bridged->bridges, static_cast<int>(turns.size()) - 1);

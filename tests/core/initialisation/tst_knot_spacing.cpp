@@ -89,10 +89,10 @@ class TestKnotSpacing : public QObject {
  private slots:
   void spacing_followsTheMotion_data() {
     QTest::addColumn<int>("motion");
-    QTest::addColumn<double>("least_ms");
-    QTest::addColumn<double>("most_ms");
-    const auto row = [](const char* name, Motion motion, double least_ms, double most_ms) {
-      QTest::newRow(name) << static_cast<int>(motion) << least_ms << most_ms;
+    QTest::addColumn<double>("min_ms");
+    QTest::addColumn<double>("max_ms");
+    const auto row = [](const char* name, Motion motion, double min_ms, double max_ms) {
+      QTest::newRow(name) << static_cast<int>(motion) << min_ms << max_ms;
     };
     row("hardly moving", Motion::HardlyMoving, 60.0, 100.0);
     row("slow", Motion::Slow, 50.0, 100.0);
@@ -102,12 +102,12 @@ class TestKnotSpacing : public QObject {
   }
   void spacing_followsTheMotion() {
     QFETCH(int, motion);
-    QFETCH(double, least_ms);
-    QFETCH(double, most_ms);
+    QFETCH(double, min_ms);
+    QFETCH(double, max_ms);
     const ViewPrecision views{2e-5, 1.5e-5};  // 0.03 px, and forty circles per view
     const KnotSpacing found = spacingOf(imuIn(static_cast<Motion>(motion)), views);
     const double spacing_ms = 1e3 * found.spacing_s();
-    QVERIFY2(spacing_ms >= least_ms && spacing_ms <= most_ms, qPrintable(describeForKnotSpacing(found)));
+    QVERIFY2(spacing_ms >= min_ms && spacing_ms <= max_ms, qPrintable(describeForKnotSpacing(found)));
     // Accelerations are splines of a lower degree, which follow less closely.
     QVERIFY2(found.rates.spacing_s >= found.accelerations.spacing_s,
              qPrintable(describeForKnotSpacing(found)));

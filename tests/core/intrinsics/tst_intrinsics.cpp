@@ -206,17 +206,17 @@ class TestIntrinsics : public QObject {
       QVERIFY(tried.spread_sigma > IntrinsicsOptions{}.equidistant_gain * taken->spread_sigma);
     QCOMPARE(static_cast<int>(story.views.size()), result.views_used);
     int circles = 0;
-    double previous_s = -1.0, most_deg = 0.0;
+    double previous_s = -1.0, max_deg = 0.0;
     for (const IntrinsicsView& view : story.views) {
       QVERIFY(view.time_s > previous_s);
       QVERIFY2(view.distance_m > 0.4 && view.distance_m < 1.2, qPrintable(QString::number(view.distance_m)));
       QVERIFY(view.reprojection_rms_px > 0.3 * kNoise_px && view.reprojection_rms_px < 4.0 * kNoise_px);
       previous_s = view.time_s;
-      most_deg = std::max(most_deg, view.tilt_deg);
+      max_deg = std::max(max_deg, view.tilt_deg);
       circles += view.circles;
     }
     QCOMPARE(circles, result.circles_used);
-    QVERIFY(most_deg >= result.largest_tilt_deg);
+    QVERIFY(max_deg >= result.largest_tilt_deg);
   }
 
   void edgeLocalisationBias_isFoundAndDoesNoHarm() {
@@ -257,8 +257,8 @@ class TestIntrinsics : public QObject {
     const Scenario truth = scenarioOf("intrinsics_davis346");
     const CameraIntrinsics& camera = truth.cameras.front().intrinsics;
     IntrinsicsOptions options;
-    options.most_views = 40;
-    options.least_view_spacing_s = 0.15;
+    options.max_views = 40;
+    options.min_view_spacing_s = 0.15;
     const auto all = sensorViews(sensorObservations(truth), truth.board, {}, options);
     const auto once = selectViews(all, truth.board, camera, options);
     const auto again = selectViews(all, truth.board, camera, options);

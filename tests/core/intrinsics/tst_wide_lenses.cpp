@@ -60,11 +60,11 @@ IntrinsicsVector errorsOf(const IntrinsicsResult& result, const CameraIntrinsics
 
 // Angles at which the pixel is computed, with the smallest one.
 double furthestCorner_deg(const test::WideViews& wide, unsigned seed) {
-  double least_z = 1.0;
+  double min_z = 1.0;
   for (const BoardView& view : test::observeWide(wide, seed).views)
     for (const CircleObservation& circle : view.circles)
-      if (const auto ray = unprojectRay(wide.camera, circle.centre_px)) least_z = std::min(least_z, ray->z());
-  return std::acos(least_z) * 180.0 / M_PI;
+      if (const auto ray = unprojectRay(wide.camera, circle.centre_px)) min_z = std::min(min_z, ray->z());
+  return std::acos(min_z) * 180.0 / M_PI;
 }
 
 QString text(double value) {

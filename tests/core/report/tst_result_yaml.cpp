@@ -28,7 +28,7 @@ NamedResult sampleForResultYaml() {
   intrinsics.focal_length_px = {1.0 / 3.0 + 260.0, 255.0};
   intrinsics.principal_point_px = {170.25, 131.0};
   intrinsics.distortion = {-0.3, 0.1, 1e-3, 2e-3, 0.05};
-  named.options = {{"grid.least_circles", "6", "7", "4", "1000", "", "", {}}};
+  named.options = {{"grid.min_circles", "6", "7", "4", "1000", "", "", {}}};
   CalibrationResult& result = test::ownResult(named);
   result.status = CalibrationStatus::Doubtful;
   result.reason = "planar motion: \"z\" is a guess\nand more";

@@ -163,7 +163,7 @@ StepTable::StepTable(QWidget* parent) : CopyTable(parent) {
 }
 
 void StepTable::setSteps(const std::vector<MaintenanceStep>& steps) {
-  constexpr int kMost_rows = 4;
+  constexpr int kMax_rows = 4;
   clear();
   for (const MaintenanceStep& step : steps) {
     QStringList others, numbers;
@@ -180,7 +180,7 @@ void StepTable::setSteps(const std::vector<MaintenanceStep>& steps) {
     addTopLevelItem(item);
   }
   fitColumns();
-  const int rows = std::min(static_cast<int>(steps.size()), kMost_rows);
+  const int rows = std::min(static_cast<int>(steps.size()), kMax_rows);
   setFixedHeight(header()->sizeHint().height() + rows * std::max(sizeHintForRow(0), 1) + 2 * frameWidth() +
                  2);
   setVisible(!steps.empty());

@@ -153,7 +153,7 @@ std::optional<std::size_t> RepeatedList::chosen() const {
 }
 
 void RepeatedList::fill() {
-  constexpr int kMost_px = 420;
+  constexpr int kMax_px = 420;
   QList<QTreeWidgetItem*> items;
   for (const RepeatedRecording& recording : recordings_) {
     const QString distance =
@@ -170,7 +170,7 @@ void RepeatedList::fill() {
   clear();
   addTopLevelItems(items);
   fitColumns();
-  setColumnWidth(kWhat, std::min(columnWidth(kWhat), kMost_px));
+  setColumnWidth(kWhat, std::min(columnWidth(kWhat), kMax_px));
 }
 
 void RepeatedList::changeEvent(QEvent* event) {

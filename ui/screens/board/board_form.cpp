@@ -27,9 +27,9 @@ namespace {
 constexpr double kMmPerM = 1e3;
 
 QSpinBox* countBox(int least, const QString& tip, QWidget* parent) {
-  constexpr int kMost = 100;
+  constexpr int kMax = 100;
   auto* const box = new QSpinBox(parent);
-  box->setRange(least, kMost);
+  box->setRange(least, kMax);
   box->setToolTip(tip);
   box->setFocusPolicy(Qt::StrongFocus);
   return box;
@@ -61,7 +61,7 @@ class FieldsArea final : public QScrollArea {
 // Initial value: the nominal length of the board.
 MeasuredLength overWholeBoard(const Board& board) {
   MeasuredLength length;
-  length.spacings = mostSpacings(board);
+  length.spacings = maxSpacings(board);
   length.length_m = length.spacings * board.spacing_m;
   return length;
 }

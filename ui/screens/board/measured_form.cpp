@@ -23,7 +23,7 @@ int spacingsBetween(const Board& board) {
 
 int mostInLine(const Board& board) {
   if (board.type == BoardType::AprilGrid) return std::max(board.rows, board.cols);
-  return mostSpacings(board) / spacingsBetween(board) + 1;
+  return maxSpacings(board) / spacingsBetween(board) + 1;
 }
 
 }  // namespace

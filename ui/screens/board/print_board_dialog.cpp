@@ -178,8 +178,8 @@ QWidget* PrintBoardDialog::makePaper() {
   for (const std::string& name : markerNames()) markers_->addItem(QString::fromStdString(name));
   markers_->setCurrentText(QString::fromUtf8(kUsualMarkers));
   markers_->setToolTip(tr("ArUco dictionary of the markers, by number of bits"));
-  constexpr int kLeast_dpi = 50, kMost_dpi = 1200, kUsual_dpi = 300;
-  resolution_dpi_->setRange(kLeast_dpi, kMost_dpi);
+  constexpr int kMin_dpi = 50, kMax_dpi = 1200, kUsual_dpi = 300;
+  resolution_dpi_->setRange(kMin_dpi, kMax_dpi);
   resolution_dpi_->setValue(kUsual_dpi);
   resolution_dpi_->setToolTip(tr("Pixels per inch of a PNG; PDF and SVG are exact"));
   resolution_dpi_->setFocusPolicy(Qt::StrongFocus);

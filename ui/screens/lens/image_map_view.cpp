@@ -24,10 +24,10 @@ ImageMapView::ImageMapView(QWidget* parent) : QWidget(parent) {
 
 void ImageMapView::setCells(ImageMapCells cells) {
   cells_ = std::move(cells);
-  most_ = 0.0;
+  max_ = 0.0;
   for (const std::optional<double>& value : cells_.values)
-    if (value && std::isfinite(*value)) most_ = std::max(most_, *value);
-  if (!(most_ > 0.0)) most_ = 1.0;
+    if (value && std::isfinite(*value)) max_ = std::max(max_, *value);
+  if (!(max_ > 0.0)) max_ = 1.0;
   update();
 }
 
@@ -43,7 +43,7 @@ QRectF ImageMapView::imageRect() const {
 // From the panel's colour to a clearly distinguishable one, also in lightness.
 QColor ImageMapView::colourOf(double value) const {
   const QColor& end = cells_.more_is_better ? theme().accent : theme().warning;
-  return mixed(theme().panel, end, 0.06 + 0.94 * std::clamp(value / most_, 0.0, 1.0));
+  return mixed(theme().panel, end, 0.06 + 0.94 * std::clamp(value / max_, 0.0, 1.0));
 }
 
 QString ImageMapView::textOf(double value) const {
@@ -82,15 +82,15 @@ void ImageMapView::paintScale(QPainter& painter) const {
   const QRectF bar(image.left(), image.bottom() + 8.0, image.width(), kBar_px);
   QLinearGradient gradient(bar.topLeft(), bar.topRight());
   gradient.setColorAt(0.0, colourOf(0.0));
-  gradient.setColorAt(1.0, colourOf(most_));
+  gradient.setColorAt(1.0, colourOf(max_));
   painter.fillRect(bar, gradient);
   painter.drawRect(bar);
   painter.setPen(theme().faint_text);
   const QRectF text(bar.left(), bar.bottom() + 2.0, bar.width(), kMapScale_px - kBar_px - 10.0);
   painter.drawText(text, Qt::AlignLeft | Qt::AlignTop, "0");
-  if (most_ >= 2.0 || !cells_.unit.isEmpty())
-    painter.drawText(text, Qt::AlignHCenter | Qt::AlignTop, textOf(0.5 * most_));
-  painter.drawText(text, Qt::AlignRight | Qt::AlignTop, textOf(most_));
+  if (max_ >= 2.0 || !cells_.unit.isEmpty())
+    painter.drawText(text, Qt::AlignHCenter | Qt::AlignTop, textOf(0.5 * max_));
+  painter.drawText(text, Qt::AlignRight | Qt::AlignTop, textOf(max_));
 }
 
 QString ImageMapView::textAt(const QPoint& position) const {

@@ -42,7 +42,7 @@ class ImageMapView : public QWidget {
   void paintScale(QPainter& painter) const;
 
   ImageMapCells cells_;
-  double most_ = 1.0;  // end of the scale
+  double max_ = 1.0;  // end of the scale
 };
 
 }  // namespace evical::ui

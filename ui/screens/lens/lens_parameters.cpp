@@ -17,8 +17,8 @@ constexpr std::size_t kPixelNumbers = 4;  // fx fy cx cy; distortion has no unit
 
 // Number of decimals up to the sigma's second digit.
 QString lensText(double value, double sigma) {
-  constexpr int kMost = 8;
-  return QString::number(value, 'f', decimalsFor(sigma, kMost));
+  constexpr int kMax = 8;
+  return QString::number(value, 'f', decimalsFor(sigma, kMax));
 }
 
 QString pixels(double value) {

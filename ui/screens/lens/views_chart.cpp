@@ -30,14 +30,14 @@ ViewsChart::ViewsChart(QWidget* parent) : QWidget(parent) {
 void ViewsChart::setViews(std::vector<IntrinsicsView> views) {
   views_ = std::move(views);
   double far_m = 0.1, tilt_deg = 10.0;
-  most_circles_ = 1;
+  max_circles_ = 1;
   for (const IntrinsicsView& view : views_) {
     far_m = std::max(far_m, view.distance_m);
     tilt_deg = std::max(tilt_deg, view.tilt_deg);
-    most_circles_ = std::max(most_circles_, view.circles);
+    max_circles_ = std::max(max_circles_, view.circles);
   }
-  most_m_ = stepOf(far_m) * std::ceil(1.02 * far_m / stepOf(far_m));
-  most_deg_ = 10.0 * std::ceil(1.02 * tilt_deg / 10.0);
+  max_m_ = stepOf(far_m) * std::ceil(1.02 * far_m / stepOf(far_m));
+  max_deg_ = 10.0 * std::ceil(1.02 * tilt_deg / 10.0);
   update();
 }
 
@@ -49,12 +49,12 @@ QRectF ViewsChart::plotRect() const {
 
 QPointF ViewsChart::placeOf(std::size_t view) const {
   const QRectF plot = plotRect();
-  return {plot.left() + plot.width() * views_[view].distance_m / most_m_,
-          plot.bottom() - plot.height() * views_[view].tilt_deg / most_deg_};
+  return {plot.left() + plot.width() * views_[view].distance_m / max_m_,
+          plot.bottom() - plot.height() * views_[view].tilt_deg / max_deg_};
 }
 
 double ViewsChart::radius_px(std::size_t view) const {
-  return 3.0 + 3.0 * views_[view].circles / most_circles_;
+  return 3.0 + 3.0 * views_[view].circles / max_circles_;
 }
 
 void ViewsChart::paintEvent(QPaintEvent*) {
@@ -71,17 +71,17 @@ void ViewsChart::paintEvent(QPaintEvent*) {
 void ViewsChart::paintAxes(QPainter& painter) const {
   const QRectF plot = plotRect();
   const double line_px = QFontMetrics(font()).height();
-  const double step_m = stepOf(most_m_), step_deg = most_deg_ > 50.0 ? 20.0 : 10.0;
-  for (double at_m = 0.0; at_m < most_m_ + 0.5 * step_m; at_m += step_m) {
-    const double x = plot.left() + plot.width() * at_m / most_m_;
+  const double step_m = stepOf(max_m_), step_deg = max_deg_ > 50.0 ? 20.0 : 10.0;
+  for (double at_m = 0.0; at_m < max_m_ + 0.5 * step_m; at_m += step_m) {
+    const double x = plot.left() + plot.width() * at_m / max_m_;
     painter.setPen(theme().grid_line);
     painter.drawLine(QPointF(x, plot.top()), QPointF(x, plot.bottom()));
     painter.setPen(theme().faint_text);
     painter.drawText(QRectF(x - 40.0, plot.bottom() + 2.0, 80.0, line_px), Qt::AlignCenter,
                      QString::number(at_m, 'g', 3));
   }
-  for (double at_deg = 0.0; at_deg < most_deg_ + 0.5 * step_deg; at_deg += step_deg) {
-    const double y = plot.bottom() - plot.height() * at_deg / most_deg_;
+  for (double at_deg = 0.0; at_deg < max_deg_ + 0.5 * step_deg; at_deg += step_deg) {
+    const double y = plot.bottom() - plot.height() * at_deg / max_deg_;
     painter.setPen(theme().grid_line);
     painter.drawLine(QPointF(plot.left(), y), QPointF(plot.right(), y));
     painter.setPen(theme().faint_text);

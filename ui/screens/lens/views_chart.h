@@ -32,8 +32,8 @@ class ViewsChart : public QWidget {
   void paintAxes(QPainter& painter) const;
 
   std::vector<IntrinsicsView> views_;
-  double most_m_ = 1.0, most_deg_ = 90.0;  // ends of the axes
-  int most_circles_ = 1;
+  double max_m_ = 1.0, max_deg_ = 90.0;  // ends of the axes
+  int max_circles_ = 1;
 };
 
 }  // namespace evical::ui

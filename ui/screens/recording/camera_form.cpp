@@ -25,7 +25,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kNotKnown = static_cast<int>(kCameraModelNames.size());  // last entry in the list of models
-constexpr double kMostPixels = 30'000.0, kMostDistortion = 100.0;
+constexpr double kMaxPixels = 30'000.0, kMaxDistortion = 100.0;
 
 void showText(QLabel* label, const QString& text) {
   label->setText(text);
@@ -38,17 +38,17 @@ CameraForm::CameraForm(QWidget* parent)
     : QWidget(parent),
       form_(new QFormLayout(this)),
       name_(new QLineEdit(this)),
-      width_px_(new NumberField(0.0, kMostPixels, this)),
-      height_px_(new NumberField(0.0, kMostPixels, this)),
+      width_px_(new NumberField(0.0, kMaxPixels, this)),
+      height_px_(new NumberField(0.0, kMaxPixels, this)),
       clock_offset_s_(clockOffsetField(this)),
       model_(new QComboBox(this)),
       shutter_(new QComboBox(this)),
       sensor_(new QComboBox(this)),
       board_(new QComboBox(this)),
-      focal_x_px_(new NumberField(0.0, 10 * kMostPixels, this)),
-      focal_y_px_(new NumberField(0.0, 10 * kMostPixels, this)),
-      centre_x_px_(new NumberField(-kMostPixels, kMostPixels, this)),
-      centre_y_px_(new NumberField(-kMostPixels, kMostPixels, this)),
+      focal_x_px_(new NumberField(0.0, 10 * kMaxPixels, this)),
+      focal_y_px_(new NumberField(0.0, 10 * kMaxPixels, this)),
+      centre_x_px_(new NumberField(-kMaxPixels, kMaxPixels, this)),
+      centre_y_px_(new NumberField(-kMaxPixels, kMaxPixels, this)),
       coefficient_names_(new QLabel(this)),
       take_over_(new QPushButton(tr("Use the last run's estimate"), this)),
       file_problem_(new FormLabel({}, "problem", this)) {
@@ -100,7 +100,7 @@ CameraForm::CameraForm(QWidget* parent)
   for (const auto& [field, name] : named) field->setAccessibleName(name);
   int coefficient = 0;
   for (NumberField*& field : distortion_) {
-    field = new NumberField(-kMostDistortion, kMostDistortion, this);
+    field = new NumberField(-kMaxDistortion, kMaxDistortion, this);
     field->setAccessibleName(tr("Distortion coefficient %1").arg(++coefficient));
     field->setMinimumWidth(40);
     row->addWidget(field);
@@ -108,9 +108,9 @@ CameraForm::CameraForm(QWidget* parent)
   form_->setContentsMargins(4, 8, 4, 8);
   form_->setRowWrapPolicy(QFormLayout::DontWrapRows);  // wrapped fields vanish before rows that are hidden
   for (QComboBox* const box : {model_, shutter_, sensor_, board_}) {
-    constexpr int kLeastCharacters = 8;  // longer names are readable in the open list
+    constexpr int kMinCharacters = 8;  // longer names are readable in the open list
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    box->setMinimumContentsLength(kLeastCharacters);
+    box->setMinimumContentsLength(kMinCharacters);
   }
   form_->addRow(tr("Name"), name_);
   // Names of models are too long for the column of fields in a narrow page.
@@ -157,9 +157,9 @@ QWidget* CameraForm::pairOf(NumberField* first, NumberField* second) {
   auto* const layout = new QHBoxLayout(pair);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(6);
-  constexpr int kLeast_px = 48;  // "1234.5"
+  constexpr int kMin_px = 48;  // "1234.5"
   for (NumberField* const field : {first, second}) {
-    field->setMinimumWidth(kLeast_px);
+    field->setMinimumWidth(kMin_px);
     layout->addWidget(field);
   }
   return pair;

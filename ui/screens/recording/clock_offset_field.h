@@ -7,8 +7,8 @@
 namespace evical::ui {
 
 inline NumberField* clockOffsetField(QWidget* parent) {
-  constexpr double kMost_s = 1e10;  // between any clocks that count from 1970 or from power-on
-  auto* const field = new NumberField(-kMost_s, kMost_s, parent);
+  constexpr double kMax_s = 1e10;  // between any clocks that count from 1970 or from power-on
+  auto* const field = new NumberField(-kMax_s, kMax_s, parent);
   field->setToolTip(
       QObject::tr("Seconds to add to the times of this sensor's file if its clock has another zero than the "
                   "recording. The remaining error must be within the searched time offset "

@@ -92,12 +92,12 @@ ImuForm::ImuForm(QWidget* parent)
       tr("Unit of the recorded accelerations, if the file does not state it or states it wrongly; "
          "-g for drivers that report gravity instead of specific force"));
   form_->setContentsMargins(8, 8, 8, 8);
-  constexpr int kLeast_px = 70;  // "0.00187"
-  for (NumberField* const field : {gyroscope_, accelerometer_}) field->setMinimumWidth(kLeast_px);
+  constexpr int kMin_px = 70;  // "0.00187"
+  for (NumberField* const field : {gyroscope_, accelerometer_}) field->setMinimumWidth(kMin_px);
   for (QComboBox* const box : {preset_, angular_rate_unit_, acceleration_unit_}) {
-    constexpr int kLeastCharacters = 12;  // longer names are readable in the open list
+    constexpr int kMinCharacters = 12;  // longer names are readable in the open list
     box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-    box->setMinimumContentsLength(kLeastCharacters);
+    box->setMinimumContentsLength(kMinCharacters);
   }
   form_->setRowWrapPolicy(QFormLayout::WrapLongRows);
   form_->addRow(tr("Name"), name_);

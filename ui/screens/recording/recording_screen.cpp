@@ -246,12 +246,12 @@ QWidget* RecordingScreen::makeRangeAndFiles(QWidget* parent) {
 }
 
 QWidget* RecordingScreen::makeForms() {
-  constexpr int kLeastSensors_px = 246;  // tabs, and the form of a camera down to its distortion
+  constexpr int kMinSensors_px = 246;  // tabs, and the form of a camera down to its distortion
   auto* const forms = new FormsRow(this);
   auto* const sensors = new QWidget(forms);
   auto* const column = new QVBoxLayout(sensors);
   column->setContentsMargins(0, 0, 0, 0);
-  sensors_->setMinimumHeight(kLeastSensors_px);
+  sensors_->setMinimumHeight(kMinSensors_px);
   column->addWidget(sensors_, 1);
   reference_->setToolTip(
       tr("The IMU that defines the reference frame and clock; a camera "

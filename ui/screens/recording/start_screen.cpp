@@ -28,7 +28,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kWidest_px = 1080, kDemo_px = 300;
-constexpr int kLeastPicture_px = 20, kPicture_px = 170;  // smaller if docks need the height
+constexpr int kMinPicture_px = 20, kPicture_px = 170;  // smaller if docks need the height
 
 QPushButton* choice(const QString& text, const QString& icon_name, QWidget* parent) {
   auto* const button = new QPushButton(icon(icon_name), " " + text, parent);
@@ -44,7 +44,7 @@ QFrame* stepCard(QWidget* picture, const QString& title, const QString& text,
   card->setProperty("card", true);
   auto* const layout = new QVBoxLayout(card);
   layout->setContentsMargins(14, 14, 14, 14);
-  picture->setMinimumHeight(kLeastPicture_px);
+  picture->setMinimumHeight(kMinPicture_px);
   picture->setMaximumHeight(kPicture_px);
   layout->addWidget(picture);
   layout->addWidget(wrappedLabel(title, "heading", card));

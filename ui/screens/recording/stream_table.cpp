@@ -125,8 +125,8 @@ void StreamTable::addInspection(const Inspection& inspection, const std::filesys
 }
 
 void StreamTable::fitHeight() {
-  constexpr int kMostRows = 5;  // more are reached by scrolling: the forms below need space
-  const int rows = std::clamp(rowCount(), 1, kMostRows);
+  constexpr int kMaxRows = 5;  // more are reached by scrolling: the forms below need space
+  const int rows = std::clamp(rowCount(), 1, kMaxRows);
   setFixedHeight(horizontalHeader()->sizeHint().height() + rows * verticalHeader()->defaultSectionSize() + 6);
 }
 

@@ -17,8 +17,8 @@ namespace evical::ui {
 
 namespace {
 
-constexpr double kLeastRatio = 0.03, kRatioScale_px = 96.0;  // the scale and the text below it
-constexpr int kLeastRow_px = 26, kMostRow_px = 40;
+constexpr double kMinRatio = 0.03, kRatioScale_px = 96.0;  // the scale and the text below it
+constexpr int kMinRow_px = 26, kMaxRow_px = 40;
 
 }  // namespace
 
@@ -58,16 +58,15 @@ QString ObservabilityView::nameOf(std::size_t bar) const {
 }
 
 QSize ObservabilityView::minimumSizeHint() const {
-  constexpr int kLeastWidth_px = 260;
+  constexpr int kMinWidth_px = 260;
   const auto bars = static_cast<int>(needed_over_sigma_.size());
-  return {kLeastWidth_px, static_cast<int>(kRatioScale_px) + bars * kLeastRow_px};
+  return {kMinWidth_px, static_cast<int>(kRatioScale_px) + bars * kMinRow_px};
 }
 
 // Logarithmic scale.
 double ObservabilityView::place_px(double ratio) const {
   const double most = std::max(30.0, 2.0 * needed_over_sigma_.back());
-  return width() * std::log(std::clamp(ratio, kLeastRatio, most) / kLeastRatio) /
-         std::log(most / kLeastRatio);
+  return width() * std::log(std::clamp(ratio, kMinRatio, most) / kMinRatio) / std::log(most / kMinRatio);
 }
 
 void ObservabilityView::paintEvent(QPaintEvent*) {
@@ -84,7 +83,7 @@ void ObservabilityView::paintEvent(QPaintEvent*) {
 
 double ObservabilityView::rowHeight_px() const {
   const auto bars = static_cast<double>(needed_over_sigma_.size());
-  return std::min<double>(kMostRow_px, (height() - kRatioScale_px) / bars);
+  return std::min<double>(kMaxRow_px, (height() - kRatioScale_px) / bars);
 }
 
 // Name and value above the bar.

@@ -20,7 +20,7 @@ namespace {
 
 // A direction has no value, only a difference to another direction.
 const char* const kGravityKey = "gravity";
-constexpr int kMostDecimals = 8;
+constexpr int kMaxDecimals = 8;
 const QString kAcceleration = QString("m/s") + QChar(0xb2);
 
 // "Accelerometer delay", "Gyroscope scale xx", "Focal length x".
@@ -129,15 +129,14 @@ ParameterGroup gravityGroup(const NamedResult& named) {
 }  // namespace
 
 QString ParameterRow::valueText() const {
-  return key == kGravityKey ? QString() : QString::number(value, 'f', decimalsFor(sigma, kMostDecimals));
+  return key == kGravityKey ? QString() : QString::number(value, 'f', decimalsFor(sigma, kMaxDecimals));
 }
 QString ParameterRow::sigmaText() const {
-  return sigma > 0.0 ? QString::number(sigma, 'f', decimalsFor(sigma, kMostDecimals)) : QString();
+  return sigma > 0.0 ? QString::number(sigma, 'f', decimalsFor(sigma, kMaxDecimals)) : QString();
 }
 QString ParameterRow::differenceText() const {
   if (!difference) return {};
-  return (*difference < 0.0 ? "" : "+") +
-         QString::number(*difference, 'f', decimalsFor(sigma, kMostDecimals));
+  return (*difference < 0.0 ? "" : "+") + QString::number(*difference, 'f', decimalsFor(sigma, kMaxDecimals));
 }
 QString ParameterRow::sigmasText() const {
   return difference && sigma > 0.0 ? QString::number(std::abs(*difference) / sigma, 'f', 1) : QString();

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 constexpr double kHomeAzimuth_rad = -0.65, kHomeElevation_rad = 0.45;
 constexpr double kTurn_rad_per_px = 0.01, kTurn_rad_per_key = 0.1;
 constexpr double kMillimetresPerMetre = 1e3;
-constexpr double kLeastExtent_m = 0.02;  // for sensors on one chip
+constexpr double kMinExtent_m = 0.02;  // for sensors on one chip
 
 // Edges and far border of the field of view, at distance `depth`.
 std::vector<Vector3d> cameraOutline(const std::optional<CameraIntrinsics>& lens, double depth_m) {
@@ -165,7 +165,7 @@ QString RigDrawing::text() const {
 
 double RigDrawing::axisLength_m() const {
   constexpr double kShare = 0.4;
-  double extent_m = kLeastExtent_m;
+  double extent_m = kMinExtent_m;
   for (const Sensor& sensor : sensors_)
     extent_m = std::max(extent_m, sensor.reference_from_sensor.translation_m.norm());
   return kShare * extent_m;
@@ -225,14 +225,14 @@ void RigDrawing::paint(QPainter& painter, const QSizeF& size) const {
 
 // Letters of short axes would overlap.
 void RigDrawing::addLetters(const View& view, const Sensor& sensor, std::vector<Label>& labels) const {
-  constexpr double kLeastAxis_px = 12.0, kBeyond = 1.14, kBox_px = 14.0;
+  constexpr double kMinAxis_px = 12.0, kBeyond = 1.14, kBox_px = 14.0;
   const double length_m = axisLength_m();
   const QPointF origin = view(sensor.reference_from_sensor.translation_m);
   for (int axis = 0; axis < 3; ++axis) {
     const auto at = [&](double share) {
       return view(sensor.reference_from_sensor * Vector3d(share * length_m * Vector3d::Unit(axis)));
     };
-    if (QLineF(origin, at(1.0)).length() < kLeastAxis_px) continue;
+    if (QLineF(origin, at(1.0)).length() < kMinAxis_px) continue;
     QRectF place(0.0, 0.0, kBox_px, kBox_px);
     place.moveCenter(at(kBeyond));
     labels.push_back(
@@ -241,7 +241,7 @@ void RigDrawing::addLetters(const View& view, const Sensor& sensor, std::vector<
 }
 
 std::vector<RigDrawing::Label> RigDrawing::labels(const QSizeF& size) const {
-  constexpr double kLeastLine_px = 24.0, kScale_px = 26.0;
+  constexpr double kMinLine_px = 24.0, kScale_px = 26.0;
   const View from = view(size);
   std::vector<Label> all;
   for (const Sensor& sensor : sensors_) addLetters(from, sensor, all);
@@ -262,7 +262,7 @@ std::vector<RigDrawing::Label> RigDrawing::labels(const QSizeF& size) const {
   for (const Sensor& sensor : sensors_) {
     if (sensor.reference) continue;
     const QPointF origin = from(Vector3d::Zero()), end = from(sensor.reference_from_sensor.translation_m);
-    if (QLineF(origin, end).length() < kLeastLine_px) continue;
+    if (QLineF(origin, end).length() < kMinLine_px) continue;
     const QString text = millimetres(sensor.reference_from_sensor.translation_m.norm());
     const QSizeF needed = sizeOf(text, font());
     std::vector<QPointF> middles = along(origin, end);

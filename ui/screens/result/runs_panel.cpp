@@ -69,8 +69,8 @@ RunsPanel::RunsPanel(QWidget* parent)
   list_->setColumnCount(kColumns);
   list_->setHeaderLabels({tr("Run"), tr("Date"), tr("Verdict"), tr("Rejected"), tr("Duration"),
                           tr("Changes to the previous run")});
-  constexpr int kLeastList_px = 48;  // its header and a run: the dock must not enlarge the window
-  list_->setMinimumHeight(kLeastList_px);
+  constexpr int kMinList_px = 48;  // its header and a run: the dock must not enlarge the window
+  list_->setMinimumHeight(kMinList_px);
   list_->setRootIsDecorated(false);
   list_->setUniformRowHeights(true);
   list_->setSelectionMode(QAbstractItemView::ExtendedSelection);

@@ -188,7 +188,7 @@ class TestSavedDetections : public QObject {
   void otherOptionsOfTheDetection_areReported_data() {
     QTest::addColumn<QString>("option");
     QTest::addColumn<QString>("value");
-    QTest::newRow("events") << "detection.longest_window_s"
+    QTest::newRow("events") << "detection.max_window_s"
                             << "0.04";
     QTest::newRow("lens that is calibrated first") << "intrinsics.model"
                                                    << "pinhole_equidistant";

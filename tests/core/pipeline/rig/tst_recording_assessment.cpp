@@ -214,7 +214,7 @@ class TestRecordingAssessment : public QObject {
     QVERIFY(!changed([](Session& other) { other.board.rows = 9; }));
     QVERIFY(!changed([](Session& other) { other.time_range_s = {1.0, 2.0}; }));
     QVERIFY(!changed([](Session& other) { other.cameras.front().intrinsics.reset(); }));
-    QVERIFY(!changed([](Session& other) { other.options.front_end.edit().grid.least_circles += 1; }));
+    QVERIFY(!changed([](Session& other) { other.options.front_end.edit().grid.min_circles += 1; }));
     QVERIFY(!changed([](Session& other) { other.imus.front().stream = "/other"; }));
   }
 

@@ -373,7 +373,7 @@ class TestSavedRun : public QObject {
     const std::filesystem::path place = scratch() / "list";
     Session session = simulated_.session;
     for (int k = 0; k < 4; ++k) {
-      session.options.front_end.edit().grid.least_circles = 8 + k / 2;
+      session.options.front_end.edit().grid.min_circles = 8 + k / 2;
       keepRun(place / std::to_string(k), session, run_, "test", "", 1000 + k);
     }
     renameRun(place / "1", "the \"good\": one");
@@ -385,7 +385,7 @@ class TestSavedRun : public QObject {
     QVERIFY(differingFrom(runs[0], runs[1]).empty());
     const std::vector<std::string> differing = differingFrom(runs[1], runs[2]);
     QCOMPARE(differing.size(), std::size_t{1});
-    QVERIFY2(differing[0].find("least_circles 9 (was ") != std::string::npos, differing[0].c_str());
+    QVERIFY2(differing[0].find("min_circles 9 (was ") != std::string::npos, differing[0].c_str());
 
     writeForSavedRun(place / "2" / "run.yaml", "evical_run: 7\n");
     QCOMPARE(listRuns(place).size(), std::size_t{3});

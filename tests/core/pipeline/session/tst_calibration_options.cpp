@@ -105,9 +105,9 @@ class TestCalibrationOptions : public QObject {
     setOption(options, "tuning.optimisation.max_rounds", "3");  // without the middle part
     QCOMPARE(options.optimisation->max_rounds, 3);
     QCOMPARE(differingOptions(options)[0].name, std::string("tuning.optimisation.solver.max_rounds"));
-    for (const auto& [name, other] : {std::pair("grid.least_sine", "tuning.grid.least_sine"),
+    for (const auto& [name, other] : {std::pair("grid.min_sine", "tuning.grid.min_sine"),
                                       std::pair("optimisation.max_rounds", "tuning.optimisation.max_rounds"),
-                                      std::pair("tuning.grid.least_circles", "Write grid.least_circles")}) {
+                                      std::pair("tuning.grid.min_circles", "Write grid.min_circles")}) {
       try {
         setOption(options, name, "9");
         QFAIL("must throw");
@@ -126,22 +126,22 @@ class TestCalibrationOptions : public QObject {
                         const char* upper_value) {
       QTest::newRow(lower) << lower << lower_value << upper << upper_value;
     };
-    add("detection.shortest_window_s", "0.1", "detection.longest_window_s", "0.005");
-    add("tuning.detection.search_interval_s", "2", "tuning.detection.longest_search_interval_s", "1");
-    add("tuning.bursts.shortest_gap_s", "0.1", "tuning.bursts.longest_gap_s", "0.05");
-    add("detection.smallest_radius_px", "90", "detection.largest_radius_px", "80");
+    add("detection.min_window_s", "0.1", "detection.max_window_s", "0.005");
+    add("tuning.detection.search_interval_s", "2", "tuning.detection.max_search_interval_s", "1");
+    add("tuning.bursts.min_gap_s", "0.1", "tuning.bursts.max_gap_s", "0.05");
+    add("detection.min_radius_px", "90", "detection.max_radius_px", "80");
     add("tuning.moving_circle.last_gate_px", "3", "tuning.moving_circle.first_gate_px", "2");
-    add("tuning.grid.shortest_step_radii", "6", "tuning.grid.longest_step_radii", "5");
+    add("tuning.grid.min_step_radii", "6", "tuning.grid.max_step_radii", "5");
     add("tuning.tracking.last_gate_px", "3.5", "tuning.tracking.first_gate_px", "3");
-    add("tuning.tracking.least_polarity_cosine", "0.9", "tuning.tracking.full_polarity_cosine", "0.1");
-    add("tuning.tracking.least_event_part", "0.9", "tuning.tracking.full_event_part", "0.1");
+    add("tuning.tracking.min_polarity_cosine", "0.9", "tuning.tracking.full_polarity_cosine", "0.1");
+    add("tuning.tracking.min_event_part", "0.9", "tuning.tracking.full_event_part", "0.1");
     add("tuning.intrinsics.first_look_length_s", "2", "tuning.intrinsics.first_look_period_s", "1");
-    add("intrinsics.least_views", "90", "intrinsics.most_views", "80");
-    add("tuning.initialisation.pair_gap_s", "0.4", "tuning.initialisation.longest_pair_s", "0.3");
-    add("tuning.initialisation.least_acceleration_m_s2", "50",
-        "tuning.initialisation.largest_acceleration_m_s2", "40");
-    add("tuning.initialisation.least_rotation_rate_rad_s", "5",
-        "tuning.initialisation.largest_rotation_rate_rad_s", "4");
+    add("intrinsics.min_views", "90", "intrinsics.max_views", "80");
+    add("tuning.initialisation.pair_gap_s", "0.4", "tuning.initialisation.max_pair_s", "0.3");
+    add("tuning.initialisation.min_acceleration_m_s2", "50", "tuning.initialisation.max_acceleration_m_s2",
+        "40");
+    add("tuning.initialisation.min_rotation_rate_rad_s", "5", "tuning.initialisation.max_rotation_rate_rad_s",
+        "4");
   }
   void optionsThatExcludeEachOther_areRefused() {
     QFETCH(QString, lower);
@@ -169,12 +169,12 @@ class TestCalibrationOptions : public QObject {
   void unknownName_isRefusedWithTheNearest_data() {
     QTest::addColumn<QString>("name");
     QTest::addColumn<QString>("nearest");
-    QTest::newRow("option") << "grid.least_circle"
-                            << "least_circles";
-    QTest::newRow("group") << "gird.least_circles"
-                           << "grid.least_circles";
-    QTest::newRow("no group") << "least_circles"
-                              << "grid.least_circles";
+    QTest::newRow("option") << "grid.min_circle"
+                            << "min_circles";
+    QTest::newRow("group") << "gird.min_circles"
+                           << "grid.min_circles";
+    QTest::newRow("no group") << "min_circles"
+                              << "grid.min_circles";
     QTest::newRow("part of a group") << "optimisation.solver.thread"
                                      << "threads";
     QTest::newRow("part left out") << "optimisation.thread"
@@ -207,7 +207,7 @@ class TestCalibrationOptions : public QObject {
       QVERIFY2(text.find("`" + row.name + "`") != std::string::npos, row.name.c_str());
     QVERIFY(std::count(text.begin(), text.end(), '\n') <= 150);
     for (const std::string& page : {text, yaml})
-      for (const char* const tuned : {"tuning", "least_sine", "egomotion"})
+      for (const char* const tuned : {"tuning", "min_sine", "egomotion"})
         QVERIFY2(page.find(tuned) == std::string::npos, tuned);
   }
 };

@@ -26,14 +26,14 @@ class TestIdleOptions : public QObject {
  private slots:
   void searches_areIdle_whereTheOtherOneIsUsed() {
     Session session = test::simulatePass(0.5).session;
-    QCOMPARE(whyIdle(session, "tuning.ring_vote.least_score"),
+    QCOMPARE(whyIdle(session, "tuning.ring_vote.min_score"),
              std::string("ring votes are used only if normal flow does not find the board"));
     session.options.front_end.edit().detection.try_both = false;
-    QCOMPARE(whyIdle(session, "tuning.ring_vote.least_score"),
+    QCOMPARE(whyIdle(session, "tuning.ring_vote.min_score"),
              std::string("circles are detected only by normal flow"));
     QVERIFY(whyIdle(session, "tuning.normal_flow.fastest_px_s").empty());
     session.options.front_end.edit().detection.method = CandidateSource::RingVote;
-    QVERIFY(whyIdle(session, "tuning.ring_vote.least_score").empty());
+    QVERIFY(whyIdle(session, "tuning.ring_vote.min_score").empty());
     QVERIFY(!whyIdle(session, "tuning.normal_flow.fastest_px_s").empty());
   }
 
@@ -59,11 +59,11 @@ class TestIdleOptions : public QObject {
   void streams_decideAboutFramesAndEvents() {
     const Session session = test::simulatePass(0.5).session;
     const std::string stream = session.cameras.front().stream;
-    QVERIFY(whyIdle(session, "frames.rate_hz").empty() && whyIdle(session, "grid.least_circles").empty());
+    QVERIFY(whyIdle(session, "frames.rate_hz").empty() && whyIdle(session, "grid.min_circles").empty());
     const StreamTypes events{{stream, StreamType::Events}}, frames{{stream, StreamType::Frames}};
     QCOMPARE(whyIdle(session, "frames.rate_hz", events), std::string("no camera records frames"));
-    QVERIFY(whyIdle(session, "grid.least_circles", events).empty());
-    QCOMPARE(whyIdle(session, "grid.least_circles", frames), std::string("no camera records events"));
+    QVERIFY(whyIdle(session, "grid.min_circles", events).empty());
+    QCOMPARE(whyIdle(session, "grid.min_circles", frames), std::string("no camera records events"));
     QVERIFY(whyIdle(session, "frames.rate_hz", frames).empty());
   }
 

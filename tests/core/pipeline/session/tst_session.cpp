@@ -46,8 +46,8 @@ reference: left_imu
 prior:
   time_offset_search_s: 0.5
 options:
-  grid: {least_circles: 7}
-  tuning.bursts.least_events: 3
+  grid: {min_circles: 7}
+  tuning.bursts.min_events: 3
 )";
 
 const char* const kSessionCamchain = R"(cam0:
@@ -123,8 +123,8 @@ class TestSession : public QObject {
     QVERIFY(std::abs(180.0 * radiansPerSecond(session.imus[0].angular_rate_unit.value()) - 3.14159265358979) <
             1e-12);
     QCOMPARE(session.options.initialisation->time_offset_search_s, 0.5);
-    QCOMPARE(session.options.front_end->grid.least_circles, 7);
-    QCOMPARE(session.options.front_end->bursts.least_events, 3);
+    QCOMPARE(session.options.front_end->grid.min_circles, 7);
+    QCOMPARE(session.options.front_end->bursts.min_events, 3);
   }
 
   void optionInAGroupOfGroups_isReadInEveryForm_data() {
@@ -137,26 +137,24 @@ class TestSession : public QObject {
   }
   void optionInAGroupOfGroups_isReadInEveryForm() {
     QFETCH(QString, text);
-    const Session session = sessionWith("tuning.bursts.least_events: 3", text);
+    const Session session = sessionWith("tuning.bursts.min_events: 3", text);
     QCOMPARE(session.options.optimisation->threads, 7);
     QVERIFY(sessionYaml(session, folder()).find("optimisation.solver.threads: 7") != std::string::npos);
   }
 
   void tuning_isReadInEveryForm_andWritten() {
-    for (const char* const text : {"tuning.bursts.least_events: 4", "tuning: {bursts.least_events: 4}",
-                                   "tuning: {bursts: {least_events: 4}}"}) {
-      const Session session = sessionWith("tuning.bursts.least_events: 3", text);
-      QCOMPARE(session.options.front_end->bursts.least_events, 4);
-      QVERIFY(sessionYaml(session, folder()).find("\n  tuning.bursts.least_events: 4\n") !=
-              std::string::npos);
+    for (const char* const text : {"tuning.bursts.min_events: 4", "tuning: {bursts.min_events: 4}",
+                                   "tuning: {bursts: {min_events: 4}}"}) {
+      const Session session = sessionWith("tuning.bursts.min_events: 3", text);
+      QCOMPARE(session.options.front_end->bursts.min_events, 4);
+      QVERIFY(sessionYaml(session, folder()).find("\n  tuning.bursts.min_events: 4\n") != std::string::npos);
     }
   }
 
   void everyDefault_canBeRead() {
     std::string defaults = optionYaml();
-    const Session session =
-        sessionWith("options:\n  grid: {least_circles: 7}\n  tuning.bursts.least_events: 3\n",
-                    QString::fromStdString(defaults));
+    const Session session = sessionWith("options:\n  grid: {min_circles: 7}\n  tuning.bursts.min_events: 3\n",
+                                        QString::fromStdString(defaults));
     QCOMPARE(differingOptions(session.options).size(), std::size_t(0));
   }
 
@@ -716,18 +714,15 @@ correlation:
     row("unit", "-g", "G", {"acceleration_unit (line 25)", "m/s^2, g, -g"});
     row("reference", "reference: left_imu", "reference: left",
         {"reference", "not one of the IMUs", "left_imu"});
-    row("option", "least_circles: 7", "least_circle: 7",
-        {"options.grid.least_circle (line 31)", "least_circles"});
-    row("option's value", "least_circles: 7", "least_circles: 1",
-        {"options.grid.least_circles", "minimum of 4"});
+    row("option", "min_circles: 7", "min_circle: 7", {"options.grid.min_circle (line 31)", "min_circles"});
+    row("option's value", "min_circles: 7", "min_circles: 1", {"options.grid.min_circles", "minimum of 4"});
     row("option's group", "grid:", "gird:", {"options.gird (line 31)", "'grid'"});
-    row("part of a group", "tuning.bursts.least_events: 3", "optimisation: {solve: {threads: 3}}",
+    row("part of a group", "tuning.bursts.min_events: 3", "optimisation: {solve: {threads: 3}}",
         {"options.optimisation.solve (line 32)", "'optimisation.solver'"});
-    row("tuning without its name", "tuning.bursts.least_events: 3", "bursts: {least_events: 3}",
-        {"options.bursts.least_events (line 32)", "Write tuning.bursts.least_events"});
-    row("options that exclude each other", "tuning.bursts.least_events: 3",
-        "detection: {shortest_window_s: 0.1}",
-        {"options (line 30)", "detection.shortest_window_s (0.1 s) is above", "longest_window_s (0.05 s)"});
+    row("tuning without its name", "tuning.bursts.min_events: 3", "bursts: {min_events: 3}",
+        {"options.bursts.min_events (line 32)", "Write tuning.bursts.min_events"});
+    row("options that exclude each other", "tuning.bursts.min_events: 3", "detection: {min_window_s: 0.1}",
+        {"options (line 30)", "detection.min_window_s (0.1 s) is above", "max_window_s (0.05 s)"});
     row("prior", "time_offset_search_s: 0.5", "time_offset_search_s: 90",
         {"prior.time_offset_search_s", "60 s"});
     row("no YAML", "[346, 260]", "[346, 260", {"session.yaml (line", "not valid YAML"});

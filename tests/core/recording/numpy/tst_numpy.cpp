@@ -617,7 +617,7 @@ std::size_t residentBytes() {
 
 // 130 MB that deflate to 130 kB; the same uncompressed, and with its columns far apart.
 void TestNumpy::memory_doesNotGrow() {
-  constexpr std::size_t kRows = 10'000'000, kMost_bytes = std::size_t{16} << 20;
+  constexpr std::size_t kRows = 10'000'000, kMax_bytes = std::size_t{16} << 20;
   std::vector<std::filesystem::path> paths;
   {
     const std::string data(kRows * 13, '\0');
@@ -639,7 +639,7 @@ void TestNumpy::memory_doesNotGrow() {
       most = std::max(most, residentBytes());
     }
     QCOMPARE(count, kRows);
-    QVERIFY2(most - before < kMost_bytes, std::to_string(most - before).c_str());
+    QVERIFY2(most - before < kMax_bytes, std::to_string(most - before).c_str());
   }
 }
 
