@@ -9,7 +9,7 @@
 #include "core/base/file_places.h"
 #include "core/base/run_trace.h"
 #include "core/data/calibration_observer.h"
-#include "core/pipeline/pass/saved_detections.h"
+#include "core/pipeline/detection/saved_detections.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/unfinished_run.h"
@@ -50,7 +50,7 @@ CalibrationOutcome calibrated(const SessionArguments& arguments, const Session& 
   if (arguments.detections.empty()) return runCalibration(session, context);
   context.progress.stageStarted(nameOf(CalibrationStage::Detect));
   RestoredDetections restored = restoreDetections(arguments.detections, session, context);
-  return runCalibration(session, std::move(restored.pass), context, std::move(restored.intrinsics));
+  return runCalibration(session, std::move(restored.detections), context, std::move(restored.intrinsics));
 }
 
 // The profile is written even after a failure.

@@ -10,8 +10,8 @@
 #include "core/frontend/board_tracker.h"
 #include "core/frontend/detection_options.h"
 #include "core/frontend/stage_image_writer.h"
-#include "core/pipeline/pass/board_size_check.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/board_size_check.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/runs/result_files.h"
 
 #include <fmt/format.h>
@@ -80,12 +80,12 @@ void detectIn(const Session& session, const std::filesystem::path& output, const
   ImageWriters images(arguments, session, output);
   const RunContext context{console, stop, arguments.images ? &images : nullptr};
   console.stageStarted(nameOf(CalibrationStage::Detect));
-  const DetectionResult pass = readAndDetect(session, context);
-  for (const RecordingFault& fault : pass.faults) console.log(LogLevel::Warning, fault.text);
-  writeDetectionFiles(output, session, pass, console.logText());
+  const DetectionResult detections = readAndDetect(session, context);
+  for (const RecordingFault& fault : detections.faults) console.log(LogLevel::Warning, fault.text);
+  writeDetectionFiles(output, session, detections, console.logText());
   console.stageStarted("done");
-  for (std::size_t k = 0; k < pass.cameras.size(); ++k)
-    printOutcome(pass.cameras[k], pass.lenses[k].detection_intrinsics.has_value());
+  for (std::size_t k = 0; k < detections.cameras.size(); ++k)
+    printOutcome(detections.cameras[k], detections.lenses[k].detection_intrinsics.has_value());
 }
 
 // Several recordings get one folder each, by name, numbered if names repeat.

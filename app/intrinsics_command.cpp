@@ -7,9 +7,9 @@
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
 #include "core/base/file_places.h"
+#include "core/pipeline/detection/session_recording.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
 #include "core/pipeline/lens/intrinsics_files.h"
-#include "core/pipeline/pass/session_recording.h"
 #include "core/report/intrinsics_report.h"
 
 #include <fmt/format.h>
@@ -52,9 +52,10 @@ struct Found {
 
 void addCamera(const std::filesystem::path& folder, const SessionCamera& camera, const IntrinsicsRun& run,
                const RunContext& context, Found& found) {
-  for (const RecordingFault& fault : run.pass.faults) context.progress.log(LogLevel::Warning, fault.text);
+  for (const RecordingFault& fault : run.detections.faults)
+    context.progress.log(LogLevel::Warning, fault.text);
   const NamedIntrinsics named = namedIntrinsics(camera, run, kVersion);
-  for (FileContent& file : intrinsicsFiles(folder, named, run.pass.cameras))
+  for (FileContent& file : intrinsicsFiles(folder, named, run.detections.cameras))
     found.files.push_back(std::move(file));
   found.tables += intrinsicsTable(named);
   found.names += (found.names.empty() ? "" : ", ") + camera.name;

@@ -1,7 +1,7 @@
 // Detects the board in a session's recording and prints the position of its first circle: detect_board SESSION.
 #include "core/base/error.h"
 #include "core/base/progress.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 
 #include <cstdio>
@@ -29,9 +29,9 @@ int main(int argc, char** argv) {
   }
   try {
     const Session session = readSession(argv[1]);
-    const DetectionResult pass =
+    const DetectionResult detections =
         readAndDetect(session, RunContext{});  // a context could show progress, or stop
-    for (const BoardObservations& camera : pass.cameras) printViews(camera);
+    for (const BoardObservations& camera : detections.cameras) printViews(camera);
     return 0;
   } catch (const CalibrationError& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -67,17 +67,17 @@ Change apply(int k, double factor, SimulatedCamera& camera) {
 
 // Projection by the old result's lens.
 DetectionResult passOf(const Scenario& scenario, const CameraIntrinsics& lens, bool from_events) {
-  DetectionResult pass = test::perfectPass(scenario, kNoise_px, kWindow_s);
+  DetectionResult detections = test::perfectPass(scenario, kNoise_px, kWindow_s);
   if (from_events) {
     BoardTracker tracker(scenario.board, lens.resolution_px, lens, {}, scenario.start_ns);
     simulateEvents(scenario, 0, [&](EventSpan events) { tracker.add(events); });
-    pass.cameras.front() = tracker.finish();
-    pass.cameras.front().camera = scenario.cameras.front().name;
+    detections.cameras.front() = tracker.finish();
+    detections.cameras.front().camera = scenario.cameras.front().name;
   } else {
-    test::seeThrough(scenario.cameras.front().intrinsics, lens, pass.cameras.front());
+    test::seeThrough(scenario.cameras.front().intrinsics, lens, detections.cameras.front());
   }
-  pass.lenses.front() = givenLens(lens);
-  return pass;
+  detections.lenses.front() = givenLens(lens);
+  return detections;
 }
 
 void makePoor(int kind, Scenario& scenario) {
@@ -91,11 +91,11 @@ void makePoor(int kind, Scenario& scenario) {
 }
 
 // Half of the board, and only for a part of the time.
-void hideHalf(const Board& board, DetectionResult& pass) {
-  for (BoardView& view : pass.cameras.front().views)
+void hideHalf(const Board& board, DetectionResult& detections) {
+  for (BoardView& view : detections.cameras.front().views)
     std::erase_if(view.circles,
                   [&](const CircleObservation& circle) { return 2 * circle.circle < board.pointCount(); });
-  std::erase_if(pass.cameras.front().views, [](const BoardView& view) { return view.time_s > 4.0; });
+  std::erase_if(detections.cameras.front().views, [](const BoardView& view) { return view.time_s > 4.0; });
 }
 
 struct Row {
@@ -189,8 +189,8 @@ NamedResult resultBefore(const Arguments& arguments, int five) {
   scenario.seed += static_cast<std::uint64_t>(five);
   Session session = test::sessionFor(scenario);
   session.options.report.edit().split_half_check = false;
-  DetectionResult pass = passOf(scenario, scenario.cameras.front().intrinsics, arguments.events);
-  const CalibrationRun run = calibrate(session, std::move(pass), {});
+  DetectionResult detections = passOf(scenario, scenario.cameras.front().intrinsics, arguments.events);
+  const CalibrationRun run = calibrate(session, std::move(detections), {});
   return namedResult(session, std::make_shared<const CalibrationResult>(run.result), "benchmark");
 }
 
@@ -215,9 +215,9 @@ Row checkPair(const Arguments& arguments, int pair, const NamedResult& before) {
     setOption(session.options, setting.substr(0, equals), setting.substr(equals + 1));
   }
   const CheckInput input = checkInputOf(before, session);
-  DetectionResult pass = passOf(scenario, *input.session.cameras.front().intrinsics, arguments.events);
-  if (of_five == 4 && poor == 2) hideHalf(scenario.board, pass);
-  row.check = checkCalibration(input, std::move(pass), {}).check;
+  DetectionResult detections = passOf(scenario, *input.session.cameras.front().intrinsics, arguments.events);
+  if (of_five == 4 && poor == 2) hideHalf(scenario.board, detections);
+  row.check = checkCalibration(input, std::move(detections), {}).check;
   return row;
 }
 

@@ -41,7 +41,7 @@ struct Told {
 Told told(const Session& session) {
   const CalibrationRun run = calibrate(session, {});
   Told result{0, run.result.status};
-  for (const BoardObservations& camera : run.pass.cameras) result.events += camera.events;
+  for (const BoardObservations& camera : run.detections.cameras) result.events += camera.events;
   return result;
 }
 

@@ -96,7 +96,7 @@ DetectionResult detectionsOf(const Scenario& scenario, double ideal_px) {
 std::optional<DetectionResult> keptDetections(const std::filesystem::path& file) {
   if (file.empty() || !std::filesystem::exists(file)) return std::nullopt;
   ReadRunData kept = readRunData(file);
-  return kept.has_pass ? std::optional(std::move(kept.run.pass)) : std::nullopt;
+  return kept.has_pass ? std::optional(std::move(kept.run.detections)) : std::nullopt;
 }
 
 void keepDetections(const std::filesystem::path& file, const Outcome& outcome,
@@ -105,8 +105,8 @@ void keepDetections(const std::filesystem::path& file, const Outcome& outcome,
   std::filesystem::create_directories(file.parent_path());
   CalibrationRun run;
   run.result = *outcome.result;
-  run.pass = detections;
-  run.pass.resolutions_px = {detections.lenses.front().given->resolution_px};
+  run.detections = detections;
+  run.detections.resolutions_px = {detections.lenses.front().given->resolution_px};
   std::ofstream(file, std::ios::binary) << runData(run);
 }
 

@@ -41,7 +41,8 @@ void LaboratoryFaults::add(const Scenario& scenario, const DetectionResult& dete
     test::Recorded recorded{scenario, test::sessionFor(scenario), detections};
     const double size = fault->sizes.back();
     fault->apply(recorded, size);
-    const Outcome outcome = calibrateSession(recorded.scenario, recorded.session, std::move(recorded.pass));
+    const Outcome outcome =
+        calibrateSession(recorded.scenario, recorded.session, std::move(recorded.detections));
     addCase(*fault, outcome, valid);
     fmt::print("| {} | {} {:g} {} | {}{} |\n", scenario.name, fault->name, size, fault->unit,
                isWrongOk(outcome) ? "WRONG but " : "", outcome.verdictText());

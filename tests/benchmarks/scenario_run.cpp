@@ -6,7 +6,7 @@
 #include "core/frontend/detection_options.h"
 #include "core/geometry/camera_model.h"
 #include "core/numerics/angles.h"
-#include "core/pipeline/pass/camera_views.h"
+#include "core/pipeline/detection/camera_views.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/synthetic/board_truth.h"
@@ -69,27 +69,27 @@ BoardObservations fromFrames(const Scenario& scenario, const Session& session, s
 }
 
 DetectionResult detect(const Scenario& scenario, const Session& session, Outcome& outcome) {
-  DetectionResult pass;
-  pass.start_ns = scenario.start_ns;
+  DetectionResult detections;
+  detections.start_ns = scenario.start_ns;
   double busy_s = 0.0;
   std::uint64_t events_read = 0;
   const Scenario said = asSessionSays(scenario);
   for (std::size_t k = 0; k < scenario.cameras.size(); ++k) {
     const CameraIntrinsics& camera = said.cameras[k].intrinsics;
     const auto find = scenario.cameras[k].frames ? fromFrames : fromEvents;
-    pass.cameras.push_back(find(scenario, session, k, camera, busy_s));
-    pass.lenses.push_back(givenLens(camera));
-    pass.cameras.back().camera = scenario.cameras[k].name;
-    events_read += pass.cameras.back().events;
+    detections.cameras.push_back(find(scenario, session, k, camera, busy_s));
+    detections.lenses.push_back(givenLens(camera));
+    detections.cameras.back().camera = scenario.cameras[k].name;
+    events_read += detections.cameras.back().events;
   }
   for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
     const SimulatedImu& imu = said.imus[k];
-    pass.imus.push_back(
+    detections.imus.push_back(
         {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, k)});
   }
-  pass.detect_s = outcome.detect_s = busy_s;
+  detections.detect_s = outcome.detect_s = busy_s;
   outcome.events_per_s = static_cast<double>(events_read) / scenario.duration_s;
-  return pass;
+  return detections;
 }
 
 double windowsFound(const Scenario& scenario, const BoardObservations& observations) {
@@ -131,8 +131,8 @@ Outcome runScenario(const Scenario& scenario, const SessionChange& change) {
   Session session = test::sessionFor(scenario);
   if (change) change(session);
   Outcome detected;
-  DetectionResult pass = detect(scenario, session, detected);
-  Outcome outcome = calibrateScenario(scenario, std::move(pass), change);
+  DetectionResult detections = detect(scenario, session, detected);
+  Outcome outcome = calibrateScenario(scenario, std::move(detections), change);
   outcome.detect_s = detected.detect_s;
   outcome.events_per_s = detected.events_per_s;
   return outcome;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/data/calibration_result.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 #include "core/report/truth_comparison.h"
 #include "core/synthetic/scenario.h"

@@ -152,7 +152,7 @@ class Stages {
     session_ = simulated.session;
     // One thread: waiting for another does not count as work.
     session_.options.optimisation.edit().threads = 1;
-    start_ = initialiseCalibration(session_, std::move(simulated.pass), context_);
+    start_ = initialiseCalibration(session_, std::move(simulated.detections), context_);
     Scenario of_run = scenario;
     of_run.duration_s = kShort_s;
     short_ = simulate(of_run, folder_.filePath("short").toStdString(), context_).session;
@@ -186,8 +186,8 @@ class Stages {
   }
   void lens() {
     estimateIntrinsics({lens_.session.board,
-                        lens_.pass.resolutions_px.front(),
-                        lens_.pass.cameras.front(),
+                        lens_.detections.resolutions_px.front(),
+                        lens_.detections.cameras.front(),
                         lens_.truth.cameras.front().intrinsics,
                         {}},
                        *lens_.session.options.intrinsics, context_);

@@ -53,7 +53,7 @@ Misfit misfitOf(const CalibrationResult& result, const std::vector<ImuData>& imu
 struct Source {
   bool perfect = false;  // circles of an ideal front end: takes seconds
 
-  DetectionResult pass(const Scenario& scenario, const Session& session) const {
+  DetectionResult detections(const Scenario& scenario, const Session& session) const {
     constexpr double kSigma_px = 0.05, kWindow_s = 0.02;
     return perfect ? test::perfectPass(scenario, kSigma_px, kWindow_s)
                    : test::detectedPass(scenario, session);
@@ -66,8 +66,8 @@ struct Case {
 };
 
 Case calibrated(const Recorded& recorded) {
-  Case of{calibrateSession(recorded.scenario, recorded.session, recorded.pass), {}};
-  if (of.outcome.result) of.misfit = misfitOf(*of.outcome.result, recorded.pass.imus);
+  Case of{calibrateSession(recorded.scenario, recorded.session, recorded.detections), {}};
+  if (of.outcome.result) of.misfit = misfitOf(*of.outcome.result, recorded.detections.imus);
   return of;
 }
 
@@ -75,7 +75,7 @@ Case perturbed(const Recorded& base, const Perturbation& perturbation, double si
   Recorded recorded = base;
   perturbation.apply(recorded, size);
   if (perturbation.stage == PerturbedStage::FrontEnd)
-    recorded.pass = source.pass(recorded.scenario, recorded.session);
+    recorded.detections = source.detections(recorded.scenario, recorded.session);
   return calibrated(recorded);
 }
 
@@ -207,7 +207,7 @@ int run(int argc, char** argv) {
       Recorded base;
       base.scenario = arguments.scenarios.read(file, k);
       base.session = test::sessionFor(base.scenario);
-      base.pass = arguments.source.pass(base.scenario, base.session);
+      base.detections = arguments.source.detections(base.scenario, base.session);
       const Outcome twin = calibrated(base).outcome;
       for (const Perturbation& row : arguments.rows()) {
         for (const double size : row.sizes) {

@@ -83,7 +83,7 @@ std::array<CalibrationRun, kWays> calibrateEveryWay(const Session& unknown, cons
   runs[kJoint] = calibrate(unknown, RunContext{});
   Session held = unknown;
   held.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Fixed;
-  runs[kFound] = calibrate(held, runs[kJoint].pass, RunContext{}, runs[kJoint].intrinsics);
+  runs[kFound] = calibrate(held, runs[kJoint].detections, RunContext{}, runs[kJoint].intrinsics);
   return runs;
 }
 

@@ -30,13 +30,13 @@ CalibrationRun smallRun() {
   run.result.uncertainty.standard_deviations.setOnes(2);
   run.result.uncertainty.correlation.setIdentity(2, 2);
   run.intrinsics.emplace_back().emplace().image = {1, 2, {{}, {}}, 0.0, 0.0};
-  run.pass.cameras.resize(1);
-  run.pass.cameras[0].views = {{0.5, ViewKind::Complete, {{}, {}}}, {}};
-  run.pass.lenses.resize(1);
-  run.pass.lenses[0].given.emplace();
-  run.pass.resolutions_px.resize(1);
-  run.pass.imus = {{"imu", {}, {{}, {}}}};
-  run.pass.faults.resize(1);
+  run.detections.cameras.resize(1);
+  run.detections.cameras[0].views = {{0.5, ViewKind::Complete, {{}, {}}}, {}};
+  run.detections.lenses.resize(1);
+  run.detections.lenses[0].given.emplace();
+  run.detections.resolutions_px.resize(1);
+  run.detections.imus = {{"imu", {}, {{}, {}}}};
+  run.detections.faults.resize(1);
   return run;
 }
 

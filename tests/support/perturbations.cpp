@@ -51,13 +51,13 @@ const Perturbation& perturbation(std::string_view name) {
 
 void cutTo(const std::array<double, 2>& range_s, Recorded& recorded) {
   const auto isOutside = [&](double time_s) { return time_s < range_s[0] || time_s > range_s[1]; };
-  for (BoardObservations& camera : recorded.pass.cameras) {
+  for (BoardObservations& camera : recorded.detections.cameras) {
     std::erase_if(camera.views, [&](const BoardView& view) { return isOutside(view.time_s); });
     std::erase_if(camera.windows, [&](const auto& window) { return isOutside(window.time_s); });
   }
-  for (ImuData& imu : recorded.pass.imus)
+  for (ImuData& imu : recorded.detections.imus)
     std::erase_if(imu.samples, [&](const ImuSample& sample) {
-      return isOutside(secondsSince(recorded.pass.start_ns, sample.time_ns));
+      return isOutside(secondsSince(recorded.detections.start_ns, sample.time_ns));
     });
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/data/mirroring.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 #include "core/synthetic/scenario.h"
 
@@ -19,7 +19,7 @@ namespace evical::test {
 struct Recorded {
   Scenario scenario;
   Session session;
-  DetectionResult pass;
+  DetectionResult detections;
 };
 
 enum class PerturbedStage {
@@ -45,7 +45,8 @@ const Perturbation& perturbation(std::string_view name);
 
 // Mirrors a camera's image, as a driver may do: its observations, and its lens unless `same_lens`. Another
 // mirror image of the board is found in it, if there is one: nothing of a board with tags is.
-void mirrorImage(Mirroring how, std::size_t camera, bool same_lens, Session& session, DetectionResult& pass);
+void mirrorImage(Mirroring how, std::size_t camera, bool same_lens, Session& session,
+                 DetectionResult& detections);
 
 // Restricts it to a session's time_range_s.
 void cutTo(const std::array<double, 2>& range_s, Recorded& recorded);

@@ -17,13 +17,13 @@ namespace {
 // Sets the session's lens; circles are then those that the front end sees through it.
 template <class Change>
 void changeLens(Recorded& recorded, Change&& change) {
-  for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
-    const CameraIntrinsics truth = *recorded.pass.lenses[k].detection_intrinsics;
+  for (std::size_t k = 0; k < recorded.detections.cameras.size(); ++k) {
+    const CameraIntrinsics truth = *recorded.detections.lenses[k].detection_intrinsics;
     CameraIntrinsics said = truth;
     change(said);
     recorded.session.cameras[k].intrinsics = said;
-    recorded.pass.lenses[k] = givenLens(said);
-    seeThrough(truth, said, recorded.pass.cameras[k]);
+    recorded.detections.lenses[k] = givenLens(said);
+    seeThrough(truth, said, recorded.detections.cameras[k]);
   }
 }
 
@@ -77,7 +77,7 @@ void cameraMoved(Recorded& recorded, double angle_deg) {
 
 template <class Hidden>
 void hide(Recorded& recorded, Hidden&& isHidden) {
-  for (BoardObservations& observations : recorded.pass.cameras) {
+  for (BoardObservations& observations : recorded.detections.cameras) {
     for (BoardView& view : observations.views)
       std::erase_if(view.circles, [&](const CircleObservation& circle) {
         return isHidden(view.time_s, recorded.scenario.board.point_m(circle.circle));
@@ -134,7 +134,7 @@ int mirroredCircle(const Board& board, int circle) {
 
 template <int kImage>
 void imageMirrored(Recorded& recorded, double) {
-  mirrorImage(static_cast<Mirroring>(kImage), 0, false, recorded.session, recorded.pass);
+  mirrorImage(static_cast<Mirroring>(kImage), 0, false, recorded.session, recorded.detections);
 }
 
 void wrongRotationPrior(Recorded& recorded, double sigmas) {
@@ -152,10 +152,11 @@ void wrongOffsetPrior(Recorded& recorded, double sigmas) {
 
 }  // namespace
 
-void mirrorImage(Mirroring how, std::size_t camera, bool same_lens, Session& session, DetectionResult& pass) {
-  BoardObservations& seen = pass.cameras[camera];
+void mirrorImage(Mirroring how, std::size_t camera, bool same_lens, Session& session,
+                 DetectionResult& detections) {
+  BoardObservations& seen = detections.cameras[camera];
   const Board& board = session.boardOf(camera);
-  const CameraIntrinsics lens = *pass.lenses[camera].detection_intrinsics;
+  const CameraIntrinsics lens = *detections.lenses[camera].detection_intrinsics;
   const CameraIntrinsics mirrored = mirroredLens(how, lens);
   if (board.hasTags()) seen.views.clear();
   Eigen::Matrix2d image = Eigen::Matrix2d::Identity();
@@ -173,8 +174,8 @@ void mirrorImage(Mirroring how, std::size_t camera, bool same_lens, Session& ses
     std::ranges::sort(view.circles, {}, &CircleObservation::circle);
   }
   if (same_lens) return seeThrough(mirrored, lens, seen);
-  pass.lenses[camera] = givenLens(mirrored);
-  if (!pass.resolutions_px.empty()) pass.resolutions_px[camera] = mirrored.resolution_px;
+  detections.lenses[camera] = givenLens(mirrored);
+  if (!detections.resolutions_px.empty()) detections.resolutions_px[camera] = mirrored.resolution_px;
   session.cameras[camera].resolution_px = mirrored.resolution_px;
   session.cameras[camera].intrinsics = mirrored;
 }

@@ -188,7 +188,7 @@ void exchangeSensors(Recorded& recorded, double) {
                 [](ImuSample& sample) { std::swap(sample.angular_rate_rad_s, sample.specific_force_m_s2); });
 }
 void statedNoise(Recorded& recorded, double times) {
-  for (ImuNoise* noise : {&recorded.pass.imus.front().noise, &recorded.session.imus.front().noise}) {
+  for (ImuNoise* noise : {&recorded.detections.imus.front().noise, &recorded.session.imus.front().noise}) {
     noise->gyroscope_density *= times;
     noise->accelerometer_density *= times;
   }

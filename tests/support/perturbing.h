@@ -19,7 +19,7 @@ std::vector<Perturbation> clockPerturbations();
 std::vector<Perturbation> imuPerturbations();
 
 inline std::vector<ImuSample>& samplesOf(Recorded& recorded) {
-  return recorded.pass.imus.front().samples;
+  return recorded.detections.imus.front().samples;
 }
 
 template <class Change>
@@ -42,12 +42,12 @@ void simulateFaults(Recorded& recorded, Change&& change) {
 template <class PairAt>
 void moveCircles(Recorded& recorded, PairAt&& pairAt) {
   const SinusoidMotion motion(recorded.scenario);
-  for (std::size_t k = 0; k < recorded.pass.cameras.size(); ++k) {
+  for (std::size_t k = 0; k < recorded.detections.cameras.size(); ++k) {
     const SimulatedCamera& camera = recorded.scenario.cameras[k];
-    CameraIntrinsics ideal = *recorded.pass.lenses[k].detection_intrinsics;
+    CameraIntrinsics ideal = *recorded.detections.lenses[k].detection_intrinsics;
     ideal.distortion = {};
     ideal.model = CameraModel::PinholeRadtan;
-    for (BoardView& view : recorded.pass.cameras[k].views) {
+    for (BoardView& view : recorded.detections.cameras[k].views) {
       for (CircleObservation& circle : view.circles) {
         const double time_s = circle.time_s + camera.time_offset_s - camera.pixel.delay_s();
         const RigidTransform camera_from_world = inverse(motion.worldFromCamera(k, time_s));

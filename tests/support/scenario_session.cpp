@@ -21,17 +21,17 @@ namespace {
 DetectionResult passWith(const Scenario& scenario, const CameraIntrinsics& lens,
                          BoardObservations observations) {
   const Scenario said = asSessionSays(scenario);
-  DetectionResult pass;
-  pass.start_ns = scenario.start_ns;
+  DetectionResult detections;
+  detections.start_ns = scenario.start_ns;
   observations.camera = scenario.cameras.front().name;
-  pass.cameras.push_back(std::move(observations));
-  pass.lenses.push_back(givenLens(lens));
+  detections.cameras.push_back(std::move(observations));
+  detections.lenses.push_back(givenLens(lens));
   for (std::size_t k = 0; k < scenario.imus.size(); ++k) {
     const SimulatedImu& imu = said.imus[k];
-    pass.imus.push_back(
+    detections.imus.push_back(
         {imu.name, {imu.gyroscope_density, imu.accelerometer_density}, simulateImu(scenario, k)});
   }
-  return pass;
+  return detections;
 }
 
 }  // namespace

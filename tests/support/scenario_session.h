@@ -1,7 +1,7 @@
 // Sessions and recordings in memory for scenarios, so that tests and benchmarks need no files.
 #pragma once
 
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 #include "core/report/result_yaml.h"
 #include "core/synthetic/scenario.h"

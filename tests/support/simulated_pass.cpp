@@ -30,15 +30,15 @@ SimulatedPass simulatePass(double duration_s, const Scenario& scenario) {
   simulated.truth.duration_s = duration_s;
   simulated.session = sessionFor(simulated.truth);
   simulated.session.source = "session.yaml";
-  simulated.pass.start_ns = simulated.truth.start_ns;
+  simulated.detections.start_ns = simulated.truth.start_ns;
   for (std::size_t k = 0; k < simulated.truth.cameras.size(); ++k) {
-    simulated.pass.cameras.push_back(observationsOf(simulated.truth, k));
-    simulated.pass.lenses.push_back(givenLens(simulated.truth.cameras[k].intrinsics));
-    simulated.pass.resolutions_px.push_back(simulated.truth.cameras[k].intrinsics.resolution_px);
+    simulated.detections.cameras.push_back(observationsOf(simulated.truth, k));
+    simulated.detections.lenses.push_back(givenLens(simulated.truth.cameras[k].intrinsics));
+    simulated.detections.resolutions_px.push_back(simulated.truth.cameras[k].intrinsics.resolution_px);
   }
   for (std::size_t k = 0; k < simulated.truth.imus.size(); ++k) {
     const SessionImu& imu = simulated.session.imus[k];
-    simulated.pass.imus.push_back({imu.name, imu.noise, simulateImu(simulated.truth, k)});
+    simulated.detections.imus.push_back({imu.name, imu.noise, simulateImu(simulated.truth, k)});
   }
   return simulated;
 }

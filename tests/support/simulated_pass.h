@@ -1,7 +1,7 @@
 // A session and the detections of its front end, simulated without events: seconds instead of minutes.
 #pragma once
 
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 #include "core/synthetic/scenario.h"
 
@@ -12,7 +12,7 @@ namespace evical::test {
 struct SimulatedPass {
   Scenario truth;
   Session session;
-  DetectionResult pass;
+  DetectionResult detections;
 };
 
 // A shortened scenario of config/scenarios; circle centres with a noise of 0.05 px.

@@ -2,7 +2,7 @@
 // A short recording with the front end's results for its windows, for tests of the detection screen.
 #pragma once
 
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "tests/support/simulated_recording.h"
 #include "tests/ui/slowdown.h"
@@ -24,26 +24,26 @@ namespace evical::ui::test {
 struct Recorded {
   QTemporaryDir folder;  // for files of tests
   Session session;
-  DetectionResult pass;
+  DetectionResult detections;
 
   explicit Recorded(const std::string& name = "davis346", double duration_s = 2.0) {
     session = readSession(evical::test::simulatedRecording(name, duration_s));
-    pass = readAndDetect(session, {});
+    detections = readAndDetect(session, {});
   }
   // A window in the middle, with all of its circles.
   WindowReport goodWindow() const {
-    for (const WindowReport& window : pass.cameras.front().windows) {
+    for (const WindowReport& window : detections.cameras.front().windows) {
       if (window.time_s > 0.8 && window.outcome == WindowOutcome::Complete) return window;
     }
-    return pass.cameras.front().windows.at(pass.cameras.front().windows.size() / 2);
+    return detections.cameras.front().windows.at(detections.cameras.front().windows.size() / 2);
   }
   std::shared_ptr<const BoardObservations> observations() const {
-    return std::make_shared<BoardObservations>(pass.cameras.front());
+    return std::make_shared<BoardObservations>(detections.cameras.front());
   }
   // Detections of these windows, without estimates from them.
   std::shared_ptr<CalibrationRun> run() const {
     auto run = std::make_shared<CalibrationRun>();
-    run->pass = pass;
+    run->detections = detections;
     return run;
   }
 };

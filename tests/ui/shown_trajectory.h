@@ -47,19 +47,20 @@ inline Example makeExample(double duration_s) {
   Example example;
   example.rig = evical::test::simulateRig(options);
   example.session = sessionOf(example.rig.input);
-  DetectionResult pass;
-  pass.start_ns = example.rig.input.start_ns;
+  DetectionResult detections;
+  detections.start_ns = example.rig.input.start_ns;
   for (const CameraData& camera : example.rig.input.cameras) {
-    pass.cameras.push_back(camera.observations);
+    detections.cameras.push_back(camera.observations);
     for (const BoardView& view : camera.observations.views) {
-      pass.cameras.back().windows.push_back({view.time_s, 0.01, WindowOutcome::Complete, 0, 0, 0, false});
+      detections.cameras.back().windows.push_back(
+          {view.time_s, 0.01, WindowOutcome::Complete, 0, 0, 0, false});
     }
-    pass.lenses.push_back(camera.lens);
-    pass.resolutions_px.push_back(camera.lens.given->resolution_px);
+    detections.lenses.push_back(camera.lens);
+    detections.resolutions_px.push_back(camera.lens.given->resolution_px);
   }
-  pass.imus = example.rig.input.imus;
+  detections.imus = example.rig.input.imus;
   example.run =
-      std::make_shared<const CalibrationRun>(calibrate(example.session, std::move(pass), RunContext{}));
+      std::make_shared<const CalibrationRun>(calibrate(example.session, std::move(detections), RunContext{}));
   return example;
 }
 

@@ -257,7 +257,8 @@ class TestCameraAlone : public QObject {
     QCOMPARE(test.waitForJob(), JobOutcome::Done);
     const LensRecord& last = test.window.workbench().lens.last();
     QCOMPARE(last.camera, std::size_t{1});
-    QVERIFY(last.seen->pass.cameras.at(0).windows.empty() && !last.seen->pass.cameras.at(1).windows.empty());
+    QVERIFY(last.seen->detections.cameras.at(0).windows.empty() &&
+            !last.seen->detections.cameras.at(1).windows.empty());
     QCOMPARE(test.window.workbench().lens.others().size(), std::size_t{1});  // the session's own lens
   }
 

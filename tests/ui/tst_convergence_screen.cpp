@@ -49,7 +49,7 @@ class TestConvergenceScreen : public QObject {
   void initTestCase() {
     evical::test::setPalette(false);
     const evical::test::SimulatedPass simulated = evical::test::simulatePass(4.0);
-    run_ = std::make_shared<CalibrationRun>(calibrate(simulated.session, simulated.pass, {}));
+    run_ = std::make_shared<CalibrationRun>(calibrate(simulated.session, simulated.detections, {}));
     QVERIFY(run_->result.iterations.size() > 5);
   }
 

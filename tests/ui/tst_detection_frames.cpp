@@ -101,9 +101,9 @@ class TestDetectionFrames : public QObject {
       QCOMPARE(overview.kind, camera == kDetectionFramesEvents ? CameraKind::Events : CameraKind::Frames);
       QCOMPARE(*overview.companion,
                camera == kDetectionFramesEvents ? kDetectionFramesFrames : kDetectionFramesEvents);
-      QCOMPARE(overview.start_ns, recorded_->pass.start_ns);
+      QCOMPARE(overview.start_ns, recorded_->detections.start_ns);
       const RecordingCaches caches = reader.caches();
-      QCOMPARE(caches.events->eventCount(), recorded_->pass.cameras[kDetectionFramesEvents].events);
+      QCOMPARE(caches.events->eventCount(), recorded_->detections.cameras[kDetectionFramesEvents].events);
       QVERIFY(std::abs(static_cast<double>(caches.frames->count()) - 40.0) <= 1.0);  // 2 s at 20 Hz
       QVERIFY(std::abs(overview.read_until_s - 2.0) < 0.06);
     }
@@ -112,7 +112,7 @@ class TestDetectionFrames : public QObject {
   // Tracked from as far back as in the run.
   void analysis_findsWhatTheRunFound() {
     DetectionFramesAsked asked(*recorded_);
-    const BoardObservations& run = recorded_->pass.cameras[kDetectionFramesFrames];
+    const BoardObservations& run = recorded_->detections.cameras[kDetectionFramesFrames];
     const CameraIntrinsics& lens = *recorded_->session.cameras[kDetectionFramesEvents].intrinsics;
     int views = 0, differing = 0;
     double furthest_px = 0.0;
@@ -181,7 +181,7 @@ class TestDetectionFrames : public QObject {
     QFETCH(bool, points);
     DetectionFramesAsked asked(*recorded_);
     QCOMPARE(asked.at(foundAt_s()).outcome,
-             recorded_->pass.cameras[kDetectionFramesFrames].windows[foundWindow()].outcome);
+             recorded_->detections.cameras[kDetectionFramesFrames].windows[foundWindow()].outcome);
     asked.change(recorded_->folder.path().toStdString(), frames);
     const WindowAnalysis analysis = asked.at(foundAt_s());
     QCOMPARE(analysis.outcome, outcome);
@@ -313,14 +313,14 @@ class TestDetectionFrames : public QObject {
   }
   // The last one in which the run detected the board.
   std::size_t foundWindow() const {
-    const BoardObservations& seen = recorded_->pass.cameras[kDetectionFramesFrames];
+    const BoardObservations& seen = recorded_->detections.cameras[kDetectionFramesFrames];
     for (std::size_t k = 0; k < seen.windows.size(); ++k) {
       if (seen.windows[k].time_s == seen.views.back().time_s) return k;
     }
     qFatal("the run saw no board in frames");
   }
   double foundAt_s() const {
-    return recorded_->pass.cameras[kDetectionFramesFrames].windows[foundWindow()].time_s;
+    return recorded_->detections.cameras[kDetectionFramesFrames].windows[foundWindow()].time_s;
   }
 
   std::unique_ptr<Recorded> recorded_;

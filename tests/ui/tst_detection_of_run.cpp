@@ -55,7 +55,7 @@ class TestDetectionOfRun : public QObject {
     auto run = recorded_->run();
     if (!given) {
       session.cameras[0].intrinsics.reset();
-      run->pass.lenses[0].given.reset();
+      run->detections.lenses[0].given.reset();
     }
     DetectionScreen screen;
     screen.resize(1000, 650);
@@ -85,7 +85,7 @@ class TestDetectionOfRun : public QObject {
     if (what == 2) edited.cameras[0].intrinsics.reset();
     if (what == 3) edited.cameras[0].stream = "/another";
     screen.setSession(edited);
-    const std::size_t windows = recorded_->pass.cameras[0].windows.size();
+    const std::size_t windows = recorded_->detections.cameras[0].windows.size();
     // Events of another stream were not part of the run.
     QCOMPARE(screen.timeline().windows().size(), what == 3 ? 0 : windows);
     if (what != 3) compareWindows(screen, 60);
@@ -160,7 +160,7 @@ class TestDetectionOfRun : public QObject {
     run->result.state = restingState(*session.cameras.front().intrinsics);
     if (!given) {
       session.cameras.front().intrinsics.reset();
-      run->pass.lenses[0].given.reset();
+      run->detections.lenses[0].given.reset();
       run->result.state.cameras[0].lens.given.reset();
     }
     DetectionScreen screen;
@@ -168,7 +168,7 @@ class TestDetectionOfRun : public QObject {
     screen.show();
     screen.setSession(session);
     screen.setRun(run, session);
-    QCOMPARE(screen.timeline().windows().size(), recorded_->pass.cameras.front().windows.size());
+    QCOMPARE(screen.timeline().windows().size(), recorded_->detections.cameras.front().windows.size());
     screen.setTime(recorded_->goodWindow().time_s);
     settle(screen);
     const int without = pixelsOf(screen.view().grab().toImage(), theme().accent);
@@ -179,7 +179,7 @@ class TestDetectionOfRun : public QObject {
  private:
   // Every n-th view of the run: the same outcome, the same circles.
   void compareWindows(DetectionScreen& screen, std::size_t every) const {
-    const BoardObservations& seen = recorded_->pass.cameras[0];
+    const BoardObservations& seen = recorded_->detections.cameras[0];
     for (std::size_t k = every; k < seen.views.size(); k += every) {
       const double time_s = seen.views[k].time_s;
       screen.setTime(time_s);

@@ -73,8 +73,8 @@ class TestDetectionScreen : public QObject {
     const RecordingOverview overview = asked.reader.overview();
     QVERIFY(overview.finished);
     QVERIFY2(overview.error.empty(), overview.error.c_str());
-    QCOMPARE(overview.start_ns, recorded_->pass.start_ns);
-    QCOMPARE(asked.reader.cache()->eventCount(), recorded_->pass.cameras.front().events);
+    QCOMPARE(overview.start_ns, recorded_->detections.start_ns);
+    QCOMPARE(asked.reader.cache()->eventCount(), recorded_->detections.cameras.front().events);
     QVERIFY(std::abs(overview.read_until_s - 2.0) < 0.01);
     std::vector<Event> since_start;
     asked.reader.cache()->gather(overview.start_ns, std::numeric_limits<std::int64_t>::max(), since_start);
@@ -141,7 +141,7 @@ class TestDetectionScreen : public QObject {
     DetectionScreenAsked asked(*recorded_);
     int found = 0, asked_for = 0;
     double slowest_s = 0.0;
-    const auto& windows = recorded_->pass.cameras.front().windows;
+    const auto& windows = recorded_->detections.cameras.front().windows;
     for (std::size_t k = 10; k + 10 < windows.size(); k += 8, ++asked_for) {
       const std::clock_t begin = std::clock();
       const WindowAnalysis analysis = asked.at(windows[k]);
@@ -160,7 +160,7 @@ class TestDetectionScreen : public QObject {
     DetectionScreenAsked asked(*recorded_);
     asked.question.observations = recorded_->observations();
     double slowest_s = 0.0;
-    const auto& windows = recorded_->pass.cameras.front().windows;
+    const auto& windows = recorded_->detections.cameras.front().windows;
     for (std::size_t k = 10; k + 10 < windows.size(); k += 8) {
       asked.at(windows[k]);
       const std::clock_t begin = std::clock();
@@ -226,7 +226,7 @@ class TestDetectionScreen : public QObject {
     DetectionScreenAsked asked(*recorded_);
     asked.question.options.detection.try_both = false;
     asked.question.options.normal_flow.min_cluster_px = 10000;
-    const WindowAnalysis analysis = asked.at(recorded_->pass.cameras.front().windows[40]);
+    const WindowAnalysis analysis = asked.at(recorded_->detections.cameras.front().windows[40]);
     QCOMPARE(analysis.outcome, WindowOutcome::TooFewCircles);
     std::string failed;
     for (const StageReport& stage : analysis.stages) {

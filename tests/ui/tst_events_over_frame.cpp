@@ -265,7 +265,7 @@ class TestEventsOverFrame : public QObject {
     EventsOverFrame transfer(state, kEventsOverFrameEvents, kEventsOverFrameFrames, caches.events_px);
     double sum = 0.0;
     std::size_t count = 0;
-    for (const BoardView& view : run_->pass.cameras[kEventsOverFrameFrames].views) {
+    for (const BoardView& view : run_->detections.cameras[kEventsOverFrameFrames].views) {
       if (view.time_s < 0.3 || view.time_s > 1.7) continue;
       const GrayImage image = decodeFrame(
           caches.frames->frame(*caches.frames->nearest(start_ns + nanosecondsFrom(view.time_s))), "frame");

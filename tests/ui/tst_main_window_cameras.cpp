@@ -94,7 +94,7 @@ class TestMainWindowCameras : public QObject {
     QCOMPARE(test_->waitForJob(), JobOutcome::Done);
     const CalibrationRun& run = *test_->document().last().run;
     QCOMPARE(run.result.state.cameras.size(), std::size_t{2});
-    QCOMPARE(run.pass.cameras.size(), std::size_t{2});
+    QCOMPARE(run.detections.cameras.size(), std::size_t{2});
     const RigidTransform right_from_left = inverse(run.result.state.cameras[1].reference_from_camera) *
                                            run.result.state.cameras[0].reference_from_camera;
     QVERIFY(std::abs(right_from_left.translation_m.norm() - 0.1) < 0.02);
@@ -122,7 +122,7 @@ class TestMainWindowCameras : public QObject {
     const CalibrationRun& run = *test_->document().last().run;
     for (const int camera : {1, 0}) {
       choose(box, camera);
-      const auto& windows = run.pass.cameras[static_cast<std::size_t>(camera)].windows;
+      const auto& windows = run.detections.cameras[static_cast<std::size_t>(camera)].windows;
       const WindowReport& wanted = windows.at(windows.size() / 2);
       const auto shown = screen->timeline().windowAt(wanted.time_s);
       QVERIFY(shown);
@@ -284,7 +284,7 @@ class TestMainWindowCameras : public QObject {
 
   // A time at which both cameras saw the whole board.
   double commonWindow_s() const {
-    const auto& cameras = test_->document().last().run->pass.cameras;
+    const auto& cameras = test_->document().last().run->detections.cameras;
     for (const WindowReport& left : cameras[0].windows) {
       for (const WindowReport& right : cameras[1].windows) {
         if (left.outcome == WindowOutcome::Complete && right.outcome == WindowOutcome::Complete &&

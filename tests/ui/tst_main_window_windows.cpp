@@ -85,7 +85,7 @@ class TestMainWindowWindows : public QObject {
   void windows_areRejectedAndKept_withUndo() {
     Story test(copyOfSimulatedSession(scratch_.path()));
     const auto first = test.document().last().run;
-    const auto views = first->pass.cameras[0].views.size();
+    const auto views = first->detections.cameras[0].views.size();
     QVERIFY(!test.document().undoStack().canUndo());
     test.rejectRows(20, 22);
     const int rejected = test.rejectedInList();
@@ -101,7 +101,7 @@ class TestMainWindowWindows : public QObject {
     const auto second = test.document().last().run;
     QCOMPARE(test.rejectedInRun(), rejected);
     QCOMPARE(test.rejectedInList(), rejected);
-    QCOMPARE(second->pass.cameras[0].views.size(), views - static_cast<std::size_t>(rejected));
+    QCOMPARE(second->detections.cameras[0].views.size(), views - static_cast<std::size_t>(rejected));
     QVERIFY(!test.document().rejectionsArePending());
 
     // Undone permanently by another run; the measurements are the original ones.
@@ -110,7 +110,7 @@ class TestMainWindowWindows : public QObject {
     QCOMPARE(test.rejectedInList(), 0);
     test.recalibrate();
     QCOMPARE(test.rejectedInRun(), 0);
-    QCOMPARE(test.document().last().run->pass.cameras[0].views.size(), views);
+    QCOMPARE(test.document().last().run->detections.cameras[0].views.size(), views);
     const double before_px = first->result.cameras[0].reprojection_rms_px;
     QVERIFY(std::abs(test.document().last().run->result.cameras[0].reprojection_rms_px - before_px) <
             1e-3 * before_px);
@@ -227,7 +227,7 @@ class TestMainWindowWindows : public QObject {
     QTest::mouseClick(chart, Qt::LeftButton, {},
                       chart->mapFromParent(bars->pixelAt(2.0, 0.5 * screen->threshold_px()).toPoint()));
     const double time_s = test.detection().time_s();
-    const auto& views = test.document().last().run->pass.cameras[0].views;
+    const auto& views = test.document().last().run->detections.cameras[0].views;
     QVERIFY(std::any_of(views.begin(), views.end(),
                         [&](const BoardView& view) { return view.time_s == time_s; }));
     QVERIFY(std::abs(time_s - 2.0) < 0.1);

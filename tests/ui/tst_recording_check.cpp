@@ -79,8 +79,8 @@ class TestRecordingCheck : public QObject {
     QCOMPARE(detecting.size(), 0);
     for (const QList<QVariant>& stage : stages) QVERIFY(stage.at(0).toString() != "detect");
     const auto run = test.document().last().run;
-    QVERIFY(run && run->pass.detect_s > 0.0);
-    QCOMPARE(run->pass.detect_s, test.check.checked()->detected->pass.detect_s);
+    QVERIFY(run && run->detections.detect_s > 0.0);
+    QCOMPARE(run->detections.detect_s, test.check.checked()->detected->detections.detect_s);
     QCOMPARE(test.started.size(), 1);
     QVERIFY(!test.card()->isClear());  // the assessment stays
     QVERIFY(test.window.close());
@@ -163,12 +163,12 @@ class TestRecordingCheck : public QObject {
     CheckFixture test;
     test.window.files().open(copyOfSimulatedSession(scratch_.path()));
     QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 1, kPatience_ms);
-    const double detect_s = test.check.checked()->detected->pass.detect_s;
+    const double detect_s = test.check.checked()->detected->detections.detect_s;
     Session stricter = test.document().session();
     stricter.options.optimisation.edit().needed_translation_mm = 0.01;
     test.document().edit(stricter, "Need more");
     QTRY_COMPARE_WITH_TIMEOUT(test.checked.size(), 2, kPatience_ms);
-    QCOMPARE(test.check.checked()->detected->pass.detect_s, detect_s);
+    QCOMPARE(test.check.checked()->detected->detections.detect_s, detect_s);
     QCOMPARE(test.check.checked()->assessment.light, Light::Poor);
     QVERIFY2(test.card()->text().contains("not good enough"), qPrintable(test.card()->text()));
     answerQuestion(QMessageBox::Discard);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/detection/view_rejection.h"
 #include "tests/support/simulated_pass.h"
 #include "tests/support/test_program.h"
 #include "tests/ui/plot_pictures.h"
@@ -66,9 +66,9 @@ class TestResidualsScreen : public QObject {
 void TestResidualsScreen::initTestCase() {
   evical::test::setPalette(false);
   simulated_ = evical::test::simulatePass(5.0);
-  for (CircleObservation& circle : simulated_.pass.cameras[0].views[kSpoiltView].circles)
+  for (CircleObservation& circle : simulated_.detections.cameras[0].views[kSpoiltView].circles)
     circle.centre_px += Eigen::Vector2d(0.1, circle.circle % 2 == 0 ? 0.12 : -0.12);
-  run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, simulated_.pass, {}));
+  run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, simulated_.detections, {}));
 }
 
 void TestResidualsScreen::withoutARun_itSaysWhatToDo() {
@@ -95,7 +95,7 @@ void TestResidualsScreen::threshold_marksTheSpoiltWindowOnly() {
   QCOMPARE(changed[0][0].toDouble(), 0.11);
   QCOMPARE(screen.rejectedWindows(), std::vector<int>{kSpoiltView});
   QTRY_VERIFY(button->isEnabled());
-  const auto circles = simulated_.pass.cameras[0].views[kSpoiltView].circles.size();
+  const auto circles = simulated_.detections.cameras[0].views[kSpoiltView].circles.size();
   QCOMPARE(markedPoints(screen), static_cast<int>(circles));
   QSignalSpy recalibrate(&screen, &ResidualsScreen::recalibrateWithout);
   QTest::mouseClick(button, Qt::LeftButton);
@@ -127,7 +127,7 @@ void TestResidualsScreen::rejecting_improvesTheCalibration() {
   ResidualsScreen screen;
   fill(screen);
   screen.setThreshold(0.11);
-  const DetectionResult kept = withoutViews(run_->pass, 0, screen.rejectedWindows());
+  const DetectionResult kept = withoutViews(run_->detections, 0, screen.rejectedWindows());
   const CalibrationRun again = calibrate(simulated_.session, kept, {});
   QVERIFY(again.result.cameras[0].reprojection_rms_px < run_->result.cameras[0].reprojection_rms_px);
 }

@@ -35,7 +35,7 @@ class TestSignalsScreen : public QObject {
   void initTestCase() {
     evical::test::setPalette(false);
     simulated_ = evical::test::simulatePass(6.0);
-    run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, simulated_.pass, {}));
+    run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, simulated_.detections, {}));
   }
 
   void withoutARun_itSaysWhatToDo() {
@@ -62,7 +62,7 @@ class TestSignalsScreen : public QObject {
   void setRun_twiceShowsTheLatter() {
     SignalsScreen screen;
     auto shorter = std::make_shared<CalibrationRun>(*run_);
-    shorter->pass.imus[0].samples.resize(2000);
+    shorter->detections.imus[0].samples.resize(2000);
     QSignalSpy ready(&screen, &SignalsScreen::ready);
     screen.setRun(run_, simulated_.session);
     screen.setRun(shorter, simulated_.session);
@@ -80,10 +80,10 @@ class TestSignalsScreen : public QObject {
     const double camera_s = first[1].toDouble();
     const double offset_s = timeOffsetAt_s(run_->result.state.cameras[0], camera_s);
     QVERIFY(std::abs(offset_s) > 5e-3);
-    const auto& samples = run_->pass.imus[0].samples;
+    const auto& samples = run_->detections.imus[0].samples;
     const auto sample = std::find_if(samples.begin(), samples.end(), [&](const ImuSample& s) {
-      return std::abs(static_cast<double>(s.time_ns - run_->pass.start_ns) * 1e-9 - offset_s - camera_s) <
-             1e-6;
+      return std::abs(static_cast<double>(s.time_ns - run_->detections.start_ns) * 1e-9 - offset_s -
+                      camera_s) < 1e-6;
     });
     QVERIFY(sample != samples.end());
     QVERIFY(std::abs(sample->angular_rate_rad_s.x() - first[2].toDouble()) < 1e-6);
@@ -109,7 +109,7 @@ class TestSignalsScreen : public QObject {
     screen.findChild<QComboBox*>("below")->setCurrentIndex(1);
     const QStringList lines =
         screen.findChild<QWidget*>("gyroscope_tab")->findChild<PlotPanel*>("spectrum")->csv().split('\n');
-    const double given = run_->pass.imus[0].noise.gyroscope_density;
+    const double given = run_->detections.imus[0].noise.gyroscope_density;
     int points = 0, near = 0;
     for (const QString& line : lines.mid(1)) {
       const QStringList values = line.split(',');

@@ -185,7 +185,7 @@ class TestStories : public QObject {
     QVERIFY(run && run->result.status != CalibrationStatus::Failed);
     // No time was chosen: one with the board is shown, not the recording's last.
     auto* const detection = test.child<DetectionScreen>();
-    const auto& windows = run->pass.cameras.front().windows;
+    const auto& windows = run->detections.cameras.front().windows;
     QTRY_VERIFY(std::any_of(windows.begin(), windows.end(), [&](const WindowReport& window) {
       return std::abs(window.time_s - detection->time_s()) < 1e-9 && window.outcome <= WindowOutcome::Partial;
     }));

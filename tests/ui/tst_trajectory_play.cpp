@@ -32,7 +32,7 @@ class TestTrajectoryPlay : public QObject {
     if (!QTest::qWaitForWindowActive(screen.get())) return nullptr;
     return screen;
   }
-  double firstView_s() const { return example_.run->pass.cameras.front().views.front().time_s; }
+  double firstView_s() const { return example_.run->detections.cameras.front().views.front().time_s; }
 
  private slots:
   void initTestCase() {
@@ -73,7 +73,7 @@ class TestTrajectoryPlay : public QObject {
     QVERIFY(screen);
     screen->setTime(firstView_s());
     QTest::keyClick(screen->view(), Qt::Key_Right);
-    QCOMPARE(screen->time_s(), example_.run->pass.cameras.front().views[1].time_s);
+    QCOMPARE(screen->time_s(), example_.run->detections.cameras.front().views[1].time_s);
     QTest::keyClick(screen->view(), Qt::Key_Left);
     QCOMPARE(screen->time_s(), firstView_s());
   }

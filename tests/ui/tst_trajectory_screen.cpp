@@ -145,7 +145,7 @@ void TestTrajectoryScreen::throughTheCamera_showsWhatItSees() {
   screen->setTime(2.5);
   const CameraIntrinsics& intrinsics = *example_.session.cameras.front().intrinsics;
   const BoardView* view = nullptr;
-  for (const BoardView& candidate : example_.run->pass.cameras.front().views) {
+  for (const BoardView& candidate : example_.run->detections.cameras.front().views) {
     if (std::abs(candidate.time_s - 2.5) < 0.011) view = &candidate;
   }
   QVERIFY(view);
@@ -170,8 +170,8 @@ void TestTrajectoryScreen::kindsOfCameras_haveColoursAndALegend() {
   auto run = std::make_shared<CalibrationRun>(*example_.run);
   run->result.state.cameras.push_back(run->result.state.cameras.front());
   run->result.state.cameras.back().reference_from_camera.translation_m.x() += 0.1;
-  run->pass.cameras.push_back(run->pass.cameras.front());
-  run->pass.lenses.push_back(run->pass.lenses.front());
+  run->detections.cameras.push_back(run->detections.cameras.front());
+  run->detections.lenses.push_back(run->detections.lenses.front());
   const auto pixelsOf = [](const QImage& image, const QRect& where, const QColor& colour) {
     int count = 0;
     for (int y = where.top(); y <= where.bottom(); ++y) {
@@ -182,7 +182,7 @@ void TestTrajectoryScreen::kindsOfCameras_haveColoursAndALegend() {
   };
   int scene[2], corner[2];
   for (const bool frames : {false, true}) {
-    run->pass.cameras.back().kind = frames ? CameraKind::Frames : CameraKind::Events;
+    run->detections.cameras.back().kind = frames ? CameraKind::Frames : CameraKind::Events;
     Example rig = example_;
     rig.run = run;
     const auto screen = makeScreen(rig);

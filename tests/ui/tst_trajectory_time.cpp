@@ -50,7 +50,7 @@ void TestTrajectoryTime::rawPoses_lieOnTheTrajectory() {
   const QImage image = picture(screen->view());
   const CalibrationState& state = example_.run->result.state;
   int found = 0, count = 0;
-  for (const BoardView& view : example_.run->pass.cameras.front().views) {
+  for (const BoardView& view : example_.run->detections.cameras.front().views) {
     const auto rig = rigAt(state, view.time_s);
     if (!rig) continue;
     const auto at = screen->view()->project(rig->imu.world_from_imu.translation_m);
@@ -69,7 +69,7 @@ void TestTrajectoryTime::rawPoses_growWithTheDetections() {
   screen.setBoards(example_.session);
   QImage before = picture(screen.view());
   for (const std::size_t views : {20U, 60U, 120U}) {
-    auto some = std::make_shared<BoardObservations>(example_.run->pass.cameras.front());
+    auto some = std::make_shared<BoardObservations>(example_.run->detections.cameras.front());
     some->views.resize(views);
     const double last_s = some->views.back().time_s;
     screen.setDetections(sharedViews(some), *example_.session.cameras.front().intrinsics);

@@ -45,8 +45,8 @@ CircleResidual residualOf(int view, int circle, double x_px) {
 // of the k-th view are k thousandths of a pixel, its circles move by 10 k px/s.
 std::shared_ptr<CalibrationRun> runOf(int windows) {
   auto run = std::make_shared<CalibrationRun>();
-  run->pass.cameras.resize(1);
-  BoardObservations& seen = run->pass.cameras[0];
+  run->detections.cameras.resize(1);
+  BoardObservations& seen = run->detections.cameras[0];
   for (int k = 0; k < windows; ++k) {
     WindowReport report{0.01 + 0.02 * k, 0.01, WindowOutcome::Complete, 900, 50, 44, true};
     if (k % 10 == 3) report.outcome = k % 20 == 3 ? WindowOutcome::TooFewEvents : WindowOutcome::NoLattice;
@@ -326,10 +326,10 @@ class TestWindowList : public QObject {
 
   void missedWindows_areSteppedTo_andTheListFollows() {
     auto run = recorded_->run();
-    std::vector<WindowReport>& windows = run->pass.cameras[0].windows;
+    std::vector<WindowReport>& windows = run->detections.cameras[0].windows;
     const auto spoil = [&](std::size_t k) {
       windows[k].outcome = WindowOutcome::NoLattice;
-      std::erase_if(run->pass.cameras[0].views,
+      std::erase_if(run->detections.cameras[0].views,
                     [&](const BoardView& view) { return view.time_s == windows[k].time_s; });
     };
     for (WindowReport& window : windows)
@@ -392,7 +392,7 @@ class TestWindowList : public QObject {
 
   void pictures() {
     auto run = recorded_->run();
-    for (std::size_t k = 0; k < run->pass.cameras[0].views.size(); ++k) {
+    for (std::size_t k = 0; k < run->detections.cameras[0].views.size(); ++k) {
       run->result.circle_residuals.push_back(
           residualOf(static_cast<int>(k), 0, 0.02 + 0.001 * static_cast<double>(k % 17)));
     }
@@ -402,7 +402,7 @@ class TestWindowList : public QObject {
       screen.show();
       screen.setSession(recorded_->session);
       screen.setRun(run, recorded_->session);
-      const std::vector<BoardView>& views = run->pass.cameras[0].views;
+      const std::vector<BoardView>& views = run->detections.cameras[0].views;
       screen.setRejections(RejectedTimes{{views[22].time_s, views[24].time_s}});
       screen.setWindowsListed(true);
       for (const QSize& size : {QSize(770, 620), QSize(1028, 720), QSize(1660, 980)}) {

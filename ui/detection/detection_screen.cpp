@@ -143,7 +143,7 @@ void DetectionScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Se
   run_ = std::move(run);
   run_session_ = session;
   showRun();
-  if (runInView() != nullptr) goWhereSeen(run_->pass.cameras);
+  if (runInView() != nullptr) goWhereSeen(run_->detections.cameras);
 }
 
 // Until the user chooses a time: one with the board is better than the recording's start or, after following,
@@ -158,19 +158,19 @@ void DetectionScreen::goWhereSeen(std::span<const BoardObservations> cameras) {
 
 const CalibrationRun* DetectionScreen::runInView() const {
   const bool here = run_ && session_ && sameEvents(run_session_, *session_);
-  return here && camera_ < run_->pass.cameras.size() ? run_.get() : nullptr;
+  return here && camera_ < run_->detections.cameras.size() ? run_.get() : nullptr;
 }
 
 // A run's detections belong to its own board and lens.
 DetectionSetup DetectionScreen::detectionSetupOf(std::size_t camera) const {
   if (const CalibrationRun* const run = runInView())
-    return {run_session_.boardOf(camera), run->pass.lenses.at(camera).detection_intrinsics};
+    return {run_session_.boardOf(camera), run->detections.lenses.at(camera).detection_intrinsics};
   if (!session_ || camera >= session_->cameras.size()) return {};
   return {session_->boardOf(camera), session_->sensor(camera).intrinsics};
 }
 
 void DetectionScreen::showRun() {
-  const BoardObservations* const seen = runInView() ? &run_->pass.cameras[camera_] : nullptr;
+  const BoardObservations* const seen = runInView() ? &run_->detections.cameras[camera_] : nullptr;
   const bool posed = seen && hasPoses(*run_);
   layer_boxes_[static_cast<std::size_t>(Layer::Reprojection)]->setEnabled(posed);
   timeline_->setWindows(seen ? seen->windows : std::vector<WindowReport>{});
@@ -317,7 +317,7 @@ QString DetectionScreen::missingRecording() const {
 void DetectionScreen::showMarksAlone() {
   const CalibrationRun* const run = runInView();
   if (run == nullptr || engine_->overview().error.empty() || engine_->overview().started) return;
-  const std::vector<WindowReport>& windows = run->pass.cameras[camera_].windows;
+  const std::vector<WindowReport>& windows = run->detections.cameras[camera_].windows;
   if (!windows.empty()) timeline_->setRange(0.0, windows.back().time_s);
 }
 

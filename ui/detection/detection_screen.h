@@ -3,7 +3,7 @@
 // timeline of the whole recording, and the reason for the outcome of a window or a frame.
 #pragma once
 
-#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/detection/view_rejection.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "ui/detection/colour_legend.h"
 #include "ui/detection/layers.h"

@@ -127,13 +127,13 @@ std::vector<QPolygonF> DetectionScreen::reprojectionInto(std::size_t camera, dou
   const CalibrationRun* const run = runInView();
   if (!run || !hasPoses(*run) || !shown(Layer::Reprojection)) return {};
   return reprojectBoard(run->result.state, camera, run_session_.seenBoard(camera), time_s,
-                        viewAt(run->pass.cameras, camera, time_s),
+                        viewAt(run->detections.cameras, camera, time_s),
                         run_session_.options.optimisation->slow_edge_speed_px_s);
 }
 
 std::shared_ptr<const BoardObservations> DetectionScreen::seenBy(std::size_t camera) const {
   if (runInView() == nullptr) return nullptr;
-  return {run_, &run_->pass.cameras.at(camera)};
+  return {run_, &run_->detections.cameras.at(camera)};
 }
 
 void DetectionScreen::keepSecondOpen() {

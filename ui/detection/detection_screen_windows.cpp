@@ -109,7 +109,8 @@ void DetectionScreen::setRejections(const std::optional<RejectedTimes>& rejectio
 
 void DetectionScreen::showRejections() {
   const CalibrationRun* const run = runInView();
-  const bool possible = run != nullptr && rejections_ && rejections_->size() == run->pass.cameras.size();
+  const bool possible =
+      run != nullptr && rejections_ && rejections_->size() == run->detections.cameras.size();
   list_->setRejectable(possible);
   if (!possible) {
     list_->setRejected({});
@@ -118,7 +119,7 @@ void DetectionScreen::showRejections() {
   list_->setRejected(rejections_->at(camera_));
   int to_reject = 0, to_keep = 0;
   for (std::size_t k = 0; k < rejections_->size(); ++k) {
-    const std::vector<double> left_out = rejectedTimes_s(run->pass.cameras[k]);
+    const std::vector<double> left_out = rejectedTimes_s(run->detections.cameras[k]);
     to_reject += countOnlyIn((*rejections_)[k], left_out);
     to_keep += countOnlyIn(left_out, (*rejections_)[k]);
   }

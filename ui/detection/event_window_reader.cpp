@@ -3,8 +3,8 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
-#include "core/pipeline/pass/event_intake.h"
-#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/detection/event_intake.h"
+#include "core/pipeline/detection/session_recording.h"
 #include "core/recording/separate_reader.h"
 
 #include <algorithm>

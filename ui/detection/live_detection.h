@@ -4,7 +4,7 @@
 
 #include "core/data/calibration_observer.h"
 #include "core/frontend/detection_options.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "ui/jobs/live_view.h"
 
 #include <QObject>

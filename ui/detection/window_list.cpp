@@ -169,7 +169,7 @@ void WindowList::setRun(std::shared_ptr<const CalibrationRun> run, std::size_t c
   refresh();
   if (!run) return job_.discard();
   job_.start([this, run, camera](const std::stop_token&) {
-    const CameraKind kind = run->pass.cameras.at(camera).kind;
+    const CameraKind kind = run->detections.cameras.at(camera).kind;
     return [this, rows = windowRows(*run, camera), kind] {
       model_->setWindows(rows, kind);
       stack_->setCurrentWidget(table_);

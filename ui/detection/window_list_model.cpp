@@ -13,7 +13,7 @@ namespace evical::ui {
 namespace {
 
 std::vector<double> rmsOfViews_px(const CalibrationRun& run, std::size_t camera) {
-  const std::size_t views = run.pass.cameras[camera].views.size();
+  const std::size_t views = run.detections.cameras[camera].views.size();
   std::vector<double> squares(views, 0.0), rms_px(views, std::numeric_limits<double>::quiet_NaN());
   std::vector<int> counts(views, 0);
   for (const CircleResidual& residual : run.result.circle_residuals) {
@@ -53,14 +53,14 @@ void addView(const BoardView& view, double rms_px, std::vector<WindowRow>& rows)
 }  // namespace
 
 std::vector<WindowRow> windowRows(const CalibrationRun& run, std::size_t camera) {
-  const BoardObservations& seen = run.pass.cameras.at(camera);
+  const BoardObservations& seen = run.detections.cameras.at(camera);
   std::vector<WindowRow> rows;
   rows.reserve(seen.windows.size());
   for (const WindowReport& report : seen.windows) rows.push_back({report, report.outcome});
   const std::vector<double> rms_px = rmsOfViews_px(run, camera);
   for (std::size_t k = 0; k < seen.views.size(); ++k) addView(seen.views[k], rms_px[k], rows);
-  if (camera < run.pass.rejected_views.size())
-    for (const BoardView& view : run.pass.rejected_views[camera])
+  if (camera < run.detections.rejected_views.size())
+    for (const BoardView& view : run.detections.rejected_views[camera])
       addView(view, std::numeric_limits<double>::quiet_NaN(), rows);
   return rows;
 }

@@ -233,15 +233,15 @@ void CalibrationDocument::set(const Runs& runs) {
 }
 
 RejectedTimes CalibrationDocument::rejections() const {
-  RejectedTimes rejected_s(last_.run ? last_.run->pass.cameras.size() : 0);
+  RejectedTimes rejected_s(last_.run ? last_.run->detections.cameras.size() : 0);
   for (std::size_t k = 0; k < rejected_s.size(); ++k)
     if (const SessionCamera* const camera = sameStream(last_.session, k, session_))
-      rejected_s[k] = windowsAt(camera->rejected_windows_s, last_.run->pass.cameras[k]);
+      rejected_s[k] = windowsAt(camera->rejected_windows_s, last_.run->detections.cameras[k]);
   return rejected_s;
 }
 
 bool CalibrationDocument::rejectionsArePending() const {
-  return last_.run && rejections() != rejectedTimes_s(last_.run->pass);
+  return last_.run && rejections() != rejectedTimes_s(last_.run->detections);
 }
 
 int CalibrationDocument::rejectedCount() const {

@@ -3,7 +3,7 @@
 // reference for comparisons. GUI thread only; without widgets.
 #pragma once
 
-#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/detection/view_rejection.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/session/session.h"
 #include "core/report/result_yaml.h"

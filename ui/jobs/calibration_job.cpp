@@ -34,9 +34,9 @@ bool CalibrationJob::start(const Session& session) {
   return begun;
 }
 
-bool CalibrationJob::startAgain(const Session& session, DetectionResult pass,
+bool CalibrationJob::startAgain(const Session& session, DetectionResult detections,
                                 std::vector<std::optional<IntrinsicsResult>> intrinsics) {
-  const auto shared = std::make_shared<DetectionResult>(std::move(pass));
+  const auto shared = std::make_shared<DetectionResult>(std::move(detections));
   return run(session, RunStart::Detections, nullptr,
              [session, shared, intrinsics = std::move(intrinsics)](const RunContext& context) {
                return calibrate(session, std::move(*shared), context, intrinsics);

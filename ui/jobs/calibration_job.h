@@ -26,7 +26,7 @@ class CalibrationJob : public QObject {
   // Works on a copy. False while the runner is busy.
   bool start(const Session& session);
   // Starts from existing detections.
-  bool startAgain(const Session& session, DetectionResult pass,
+  bool startAgain(const Session& session, DetectionResult detections,
                   std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
   bool running() const { return live_ != nullptr; }
   // Start of the latest run.

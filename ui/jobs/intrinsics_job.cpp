@@ -3,7 +3,7 @@
 
 #include "core/base/time.h"
 #include "core/intrinsics/intrinsics_options.h"
-#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/detection/session_recording.h"
 
 #include <utility>
 

@@ -196,8 +196,8 @@ void ConvergenceScreen::listCameras() {
     camera_->clear();
     for (int k = 0; k < count; ++k) {
       const auto index = static_cast<std::size_t>(k);
-      camera_->addItem(run_ && index < run_->pass.cameras.size()
-                           ? QString::fromStdString(run_->pass.cameras[index].camera)
+      camera_->addItem(run_ && index < run_->detections.cameras.size()
+                           ? QString::fromStdString(run_->detections.cameras[index].camera)
                            : tr("camera %1").arg(k + 1));
     }
     camera_->setCurrentIndex(current);

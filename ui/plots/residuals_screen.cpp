@@ -198,7 +198,7 @@ void ResidualsScreen::setRun(std::shared_ptr<const CalibrationRun> run) {
   statistics_.reset();
   camera_->clear();
   if (run_) {
-    for (const BoardObservations& camera : run_->pass.cameras)
+    for (const BoardObservations& camera : run_->detections.cameras)
       camera_->addItem(QString::fromStdString(camera.camera));
   }
   camera_->setVisible(camera_->count() > 1);
@@ -225,7 +225,7 @@ void ResidualsScreen::compute() {
   if (!run_ || camera_->count() == 0) return job_->discard();
   const int wanted = camera();
   const auto detection_intrinsics =
-      run_->pass.lenses.at(static_cast<std::size_t>(wanted)).detection_intrinsics;
+      run_->detections.lenses.at(static_cast<std::size_t>(wanted)).detection_intrinsics;
   job_->start([this, run = run_, wanted, detection_intrinsics](const std::stop_token&) {
     const auto statistics = std::make_shared<const ResidualStatistics>(
         residualStatistics(run->result.circle_residuals, wanted, detection_intrinsics));
@@ -410,7 +410,7 @@ void ResidualsScreen::markTime() {
 
 // A view's circles have their own times, which may be in another window.
 double ResidualsScreen::viewTime_s(int view) const {
-  return run_->pass.cameras.at(static_cast<std::size_t>(camera()))
+  return run_->detections.cameras.at(static_cast<std::size_t>(camera()))
       .views.at(static_cast<std::size_t>(view))
       .time_s;
 }

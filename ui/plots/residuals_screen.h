@@ -53,7 +53,7 @@ class ResidualsScreen : public QWidget {
   void windowWanted(int camera, double time_s);  // to be shown
   void thresholdChanged(double rms_px);
   void recalibrateWithout(
-      const std::vector<int>& views);  // of camera(); see core/pipeline/pass/view_rejection.h
+      const std::vector<int>& views);  // of camera(); see core/pipeline/detection/view_rejection.h
   void ready();                        // all charts show the last set run
 
  private:

@@ -132,9 +132,9 @@ void SignalsScreen::setRun(std::shared_ptr<const CalibrationRun> run, const Sess
   camera_->clear();
   imu_->clear();
   if (run_) {
-    for (const BoardObservations& camera : run_->pass.cameras)
+    for (const BoardObservations& camera : run_->detections.cameras)
       camera_->addItem(QString::fromStdString(camera.camera));
-    for (const ImuData& imu : run_->pass.imus) imu_->addItem(QString::fromStdString(imu.name));
+    for (const ImuData& imu : run_->detections.imus) imu_->addItem(QString::fromStdString(imu.name));
     imu_->setCurrentIndex(static_cast<int>(session_.referenceImu()));
   }
   for (const auto& [box, label] : {std::pair{camera_, camera_label_}, std::pair{imu_, imu_label_}}) {
@@ -164,8 +164,8 @@ void SignalsScreen::compute() {
   job_->start([this, run = run_, session = session_, camera, imu](const std::stop_token& stop) {
     const RunContext context{silentProgress(), stop};
     const CalibrationState& state = run->result.state;
-    const ImuData& samples = run->pass.imus[imu];
-    SignalPrediction prediction = predictSignals(samples, run->pass.start_ns, state, imu, context);
+    const ImuData& samples = run->detections.imus[imu];
+    SignalPrediction prediction = predictSignals(samples, run->detections.start_ns, state, imu, context);
     for (SensorSignal* const signal : {&prediction.rate_rad_s, &prediction.force_m_s2})
       for (double& time_s : signal->time_s)
         time_s = sensorTime_s(state.cameras[camera], referenceTime_s(state.imus[imu], time_s));
@@ -174,11 +174,11 @@ void SignalsScreen::compute() {
         makeSignalLines(prediction.rate_rad_s, samples.rate_hz(), samples.noise.gyroscope_density);
     drawing->accelerometer = makeSignalLines(prediction.force_m_s2, samples.accelerometerRate_hz(),
                                              samples.noise.accelerometer_density);
-    const CameraLens& lens = run->pass.lenses.at(camera);
+    const CameraLens& lens = run->detections.lenses.at(camera);
     if (lens.detection_intrinsics) {
-      drawing->rates = rotationRates({session.cameras[camera].name, lens, run->pass.cameras[camera]},
+      drawing->rates = rotationRates({session.cameras[camera].name, lens, run->detections.cameras[camera]},
                                      session.boardOf(camera), state.cameras[camera], samples, state.imus[imu],
-                                     run->pass.start_ns, *session.options.initialisation, context);
+                                     run->detections.start_ns, *session.options.initialisation, context);
     }
     return [this, drawing] { draw(*drawing); };
   });

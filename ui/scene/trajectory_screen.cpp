@@ -274,19 +274,19 @@ void TrajectoryScreen::setRun(std::shared_ptr<const CalibrationRun> run, const S
     return;
   }
   d_->setBoards(session);
-  const std::vector<CameraLens>& lenses = run->pass.lenses;
+  const std::vector<CameraLens>& lenses = run->detections.lenses;
   std::vector<std::optional<CameraIntrinsics>> intrinsics;
   for (const CameraState& camera : run->result.state.cameras) intrinsics.push_back(camera.lens.inUse());
   setIntrinsics(intrinsics);
   std::vector<CameraKind> kinds;
-  for (const BoardObservations& camera : run->pass.cameras) kinds.push_back(camera.kind);
+  for (const BoardObservations& camera : run->detections.cameras) kinds.push_back(camera.kind);
   d_->scene.setCameraKinds(kinds);
   d_->placed = false;
   d_->pose_inputs.clear();
   d_->sample(std::shared_ptr<const CalibrationState>(run, &run->result.state), run);
   for (std::size_t k = 0; k < lenses.size(); ++k) {
     if (!lenses[k].detection_intrinsics) continue;
-    setDetections(sharedViews({run, &run->pass.cameras[k]}), *lenses[k].detection_intrinsics, k);
+    setDetections(sharedViews({run, &run->detections.cameras[k]}), *lenses[k].detection_intrinsics, k);
   }
 }
 

@@ -21,7 +21,7 @@ const char* const kLensFolderKey = "last_folder";
 std::vector<FileContent> lensFilesOf(const LensRecord& record, const QString& version,
                                      const std::filesystem::path& folder) {
   std::vector<FileContent> files =
-      intrinsicsFiles(folder, namedLens(record, version), record.run->pass.cameras);
+      intrinsicsFiles(folder, namedLens(record, version), record.run->detections.cameras);
   files.push_back({folder / "log.txt", record.log.toStdString()});
   return files;
 }
@@ -94,7 +94,7 @@ void LensFiles::saveAllTo(const QString& folder) {
 void LensFiles::exportTo(const QString& program, const QString& folder) {
   const std::filesystem::path below = folder.toStdString();
   write(folder, folder, [record = workbench_.lens.last(), version = workbench_.version, program, below] {
-    const CameraKind kind = record.run->pass.cameras.front().kind;
+    const CameraKind kind = record.run->detections.cameras.front().kind;
     const std::vector<std::string> targets = {program.toStdString()};
     ExportedFiles made = exportResult(lensAsResult(namedLens(record, version), kind), targets);
     for (FileContent& file : made.files) file.path = below / file.path;

@@ -29,15 +29,15 @@ std::shared_ptr<const CalibrationRun> withResiduals(const std::shared_ptr<const 
   return run && !run->result.circle_residuals.empty() ? run : nullptr;
 }
 std::shared_ptr<const CalibrationRun> withSamples(const std::shared_ptr<const CalibrationRun>& run) {
-  return run && run->pass.imus.size() == run->result.state.imus.size() ? withTrajectory(run) : nullptr;
+  return run && run->detections.imus.size() == run->result.state.imus.size() ? withTrajectory(run) : nullptr;
 }
 
 // Detections of the last run for the present session, to calibrate without some windows.
 std::optional<DetectedRecording> lastDetectedFor(const Session& session, const RunRecord& last) {
-  if (!last.run || last.run->pass.cameras.size() != session.cameras.size() ||
-      last.run->pass.imus.size() != session.imus.size() || !detectsTheSame(last.session, session))
+  if (!last.run || last.run->detections.cameras.size() != session.cameras.size() ||
+      last.run->detections.imus.size() != session.imus.size() || !detectsTheSame(last.session, session))
     return std::nullopt;
-  return forSession({last.run->pass, last.run->intrinsics}, session);
+  return forSession({last.run->detections, last.run->intrinsics}, session);
 }
 
 void wireRejections(DetectionScreen& screen, Workbench& workbench) {
@@ -146,7 +146,7 @@ void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
         RejectedTimes rejections = workbench.document.rejections();
         std::vector<double>& times_s = rejections.at(camera);
         for (const int view : views)
-          times_s.push_back(run->pass.cameras[camera].views.at(static_cast<std::size_t>(view)).time_s);
+          times_s.push_back(run->detections.cameras[camera].views.at(static_cast<std::size_t>(view)).time_s);
         std::sort(times_s.begin(), times_s.end());
         workbench.document.setRejections(rejections, QObject::tr("Reject event windows"));
         calibrateRig(workbench);
@@ -183,7 +183,7 @@ void calibrateRig(Workbench& workbench) {
   std::optional<DetectedRecording> detected;
   if (document.rejectionsArePending()) detected = lastDetectedFor(session, last);
   if (detected) {
-    workbench.calibration.startAgain(session, withRejected(detected->pass, document.rejections()),
+    workbench.calibration.startAgain(session, withRejected(detected->detections, document.rejections()),
                                      std::move(detected->intrinsics));
     return;
   }
@@ -192,7 +192,7 @@ void calibrateRig(Workbench& workbench) {
     workbench.calibration.start(session);
     return;
   }
-  workbench.calibration.startAgain(session, std::move(detected->pass), std::move(detected->intrinsics));
+  workbench.calibration.startAgain(session, std::move(detected->detections), std::move(detected->intrinsics));
 }
 
 void wireLinkedPages(const Pages& pages, Workbench& workbench) {
@@ -207,7 +207,8 @@ void wireLinkedPages(const Pages& pages, Workbench& workbench) {
   });
   QObject::connect(&workbench.check, &RecordingCheckJob::checkedAnew, pages.detection,
                    [pages](const std::shared_ptr<const CheckedRecording>& checked) {
-                     if (checked->detected) pages.detection->goWhereSeen(checked->detected->pass.cameras);
+                     if (checked->detected)
+                       pages.detection->goWhereSeen(checked->detected->detections.cameras);
                    });
   tellOfRuns(workbench.calibration, pages.result, pages.signal_curves, pages.residuals);
   // The detection screen may have followed the run.

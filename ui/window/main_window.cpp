@@ -49,7 +49,7 @@ constexpr int kLayoutVersion = 2;
 
 // Undoable: a calibration from the same detections without some windows.
 bool leavesOutOthers(const RunRecord& record, const RunRecord& last) {
-  return last.run && rejectedTimes_s(record.run->pass) != rejectedTimes_s(last.run->pass);
+  return last.run && rejectedTimes_s(record.run->detections) != rejectedTimes_s(last.run->detections);
 }
 
 }  // namespace

@@ -37,9 +37,9 @@ struct BoardSeen {
   }
 };
 
-BoardSeen boardSeen(const DetectionResult& pass) {
+BoardSeen boardSeen(const DetectionResult& detections) {
   BoardSeen seen;
-  for (const BoardObservations& camera : pass.cameras) {
+  for (const BoardObservations& camera : detections.cameras) {
     seen.windows += camera.windows.size();
     seen.with_board += camera.views.size();
   }
@@ -75,10 +75,10 @@ class Check {
     if (outcome.status == RunStatus::Cancelled) throw Cancelled{};
     if (outcome.error) {
       if (outcome.error->kind() == ErrorKind::BadInput) throw CalibrationError(*outcome.error);
-      out_.pass = std::move(outcome.pass);
+      out_.detections = std::move(outcome.detections);
       setCannotTell(outcome.error->place() + ": " + outcome.error->problem(), out_.check);
       addAdvice(outcome.error->advice(), out_.check);
-      advise({out_.pass, {}});
+      advise({out_.detections, {}});
       return std::move(out_);
     }
     out_.run = std::make_shared<const CalibrationRun>(std::move(*outcome.run));
@@ -115,13 +115,13 @@ class Check {
   // Joint solution of the old result and the recording. It is not a separate test that both agree.
   void solveTogether(const Session& session) {
     const Session weighed = withPriorOf(input_.before, session);
-    DetectionResult pass = out_.run->pass;
-    for (std::size_t k = 0; k < pass.lenses.size(); ++k)
-      pass.lenses[k] =
-          givenLens(pass.lenses[k].detection_intrinsics, weighed.cameras[k].intrinsics_uncertainty);
+    DetectionResult detections = out_.run->detections;
+    for (std::size_t k = 0; k < detections.lenses.size(); ++k)
+      detections.lenses[k] =
+          givenLens(detections.lenses[k].detection_intrinsics, weighed.cameras[k].intrinsics_uncertainty);
     PrefixedProgress progress(context_.progress, kTogetherPart);
-    const CalibrationOutcome outcome =
-        runCalibration(weighed, std::move(pass), RunContext{progress, context_.stop, context_.observer});
+    const CalibrationOutcome outcome = runCalibration(weighed, std::move(detections),
+                                                      RunContext{progress, context_.stop, context_.observer});
     if (outcome.status == RunStatus::Cancelled) throw Cancelled{};
     if (!outcome.run) {
       out_.check.notes.push_back("the calibration with the old result as prior failed: " +
@@ -142,12 +142,12 @@ class Check {
     }
     judgeFindings(out_.check);
     if (input_.duplicate || isCopy()) return judgeDuplicate(out_.check);
-    if (out_.check.verdict == Verdict::CannotTell) advise({out_.run->pass, out_.run->intrinsics});
+    if (out_.check.verdict == Verdict::CannotTell) advise({out_.run->detections, out_.run->intrinsics});
   }
 
   // Advice from the assessment of the recording.
   void advise(const DetectedRecording& detected) {
-    if (detected.pass.cameras.empty()) return;
+    if (detected.detections.cameras.empty()) return;
     try {
       for (const Assessed& one : assessRecording(input_.session, detected, context_.unobserved()).all)
         addAdvice(one.advice, out_.check);
@@ -169,7 +169,7 @@ CheckRun checkCalibration(const CheckInput& input, const RunContext& context) {
   if (input.session.options.check->no_board) return checkWithoutBoard(input, context);
   CheckRun checked =
       Check(input, context).run([&](const Session& session) { return runCalibration(session, context); });
-  const BoardSeen seen = boardSeen(checked.run ? checked.run->pass : checked.pass);
+  const BoardSeen seen = boardSeen(checked.run ? checked.run->detections : checked.detections);
   if (input.session.board_blinks || !seen.isRare(input.session.options.check->min_board_share))
     return checked;
   CheckRun without = checkWithoutBoard(input, context);
@@ -179,9 +179,9 @@ CheckRun checkCalibration(const CheckInput& input, const RunContext& context) {
   return without;
 }
 
-CheckRun checkCalibration(const CheckInput& input, DetectionResult pass, const RunContext& context) {
+CheckRun checkCalibration(const CheckInput& input, DetectionResult detections, const RunContext& context) {
   return Check(input, context).run([&](const Session& session) {
-    return runCalibration(session, std::move(pass), context);
+    return runCalibration(session, std::move(detections), context);
   });
 }
 

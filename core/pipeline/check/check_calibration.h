@@ -14,7 +14,7 @@ namespace evical {
 struct CheckRun {
   CalibrationCheck check;
   std::shared_ptr<const CalibrationRun> run;  // without the prior; empty if it has no result
-  DetectionResult pass;                       // if there is no run: data read and detected until then
+  DetectionResult detections;                 // if there is no run: data read and detected until then
 };
 
 // Name of the second run in progress, which has the old result as prior.
@@ -26,6 +26,6 @@ inline constexpr const char* kTogetherPart = "with the old result";
 CheckRun checkCalibration(const CheckInput& input, const RunContext& context);
 
 // The same from detections with the lenses of the old result.
-CheckRun checkCalibration(const CheckInput& input, DetectionResult pass, const RunContext& context);
+CheckRun checkCalibration(const CheckInput& input, DetectionResult detections, const RunContext& context);
 
 }  // namespace evical

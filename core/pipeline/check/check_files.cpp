@@ -16,7 +16,8 @@ NamedResult namedOf(const CheckInput& input, const CheckRun& checked, const std:
   const auto failed = std::make_shared<CalibrationResult>();
   failed->status = CalibrationStatus::Failed;
   failed->reason = checked.check.reason;
-  if (!checked.pass.cameras.empty() || !checked.pass.imus.empty()) failed->start_ns = checked.pass.start_ns;
+  if (!checked.detections.cameras.empty() || !checked.detections.imus.empty())
+    failed->start_ns = checked.detections.start_ns;
   return namedResult(input.session, failed, version);
 }
 
@@ -27,7 +28,8 @@ void writeCheckFiles(const std::filesystem::path& folder, const CheckInput& inpu
   const NamedResult named = namedOf(input, checked, version);
   std::vector<FileContent> files = {{"log.txt", log}};
   for (FileContent& file :
-       reportOf(input.session, named, checked.run ? checked.run->pass : checked.pass, {}, &checked.check))
+       reportOf(input.session, named, checked.run ? checked.run->detections : checked.detections, {},
+                &checked.check))
     files.push_back(std::move(file));
   files.push_back({"check.yaml", assessmentYaml(checked.check)});  // written last: marks a complete result
   writeExportedFiles(folder, files);

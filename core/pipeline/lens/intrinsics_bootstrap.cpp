@@ -5,7 +5,7 @@
 #include "core/frontend/detection_options.h"
 #include "core/intrinsics/estimate_intrinsics.h"
 #include "core/intrinsics/intrinsics_options.h"
-#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/detection/session_recording.h"
 
 #include <fmt/format.h>
 

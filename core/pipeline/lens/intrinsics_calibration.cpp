@@ -7,10 +7,10 @@
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
 #include "core/intrinsics/intrinsics_options.h"
+#include "core/pipeline/detection/board_size_check.h"
+#include "core/pipeline/detection/camera_views.h"
+#include "core/pipeline/detection/session_recording.h"
 #include "core/pipeline/lens/intrinsics_bootstrap.h"
-#include "core/pipeline/pass/board_size_check.h"
-#include "core/pipeline/pass/camera_views.h"
-#include "core/pipeline/pass/session_recording.h"
 
 #include <fmt/format.h>
 
@@ -45,13 +45,13 @@ Session cameraAlone(const Session& session, std::size_t camera) {
 }
 
 // A wrong board size can cause any failure, so it is reported first.
-IntrinsicsResult estimate(const Session& alone, const DetectionResult& pass,
+IntrinsicsResult estimate(const Session& alone, const DetectionResult& detections,
                           const std::optional<CameraIntrinsics>& start, const RunContext& context,
                           IntrinsicsStory& story) {
-  const BoardObservations& observations = pass.cameras.front();
+  const BoardObservations& observations = detections.cameras.front();
   try {
-    return estimateIntrinsics({alone.board, pass.resolutions_px.front(), observations,
-                               pass.lenses.front().detection_intrinsics, start},
+    return estimateIntrinsics({alone.board, detections.resolutions_px.front(), observations,
+                               detections.lenses.front().detection_intrinsics, start},
                               *alone.options.intrinsics, context, &story);
   } catch (const CalibrationError&) {
     checkBoardSize(observations, alone.board, alone.options.front_end->extent);
@@ -60,10 +60,10 @@ IntrinsicsResult estimate(const Session& alone, const DetectionResult& pass,
 }
 
 // Appends the views of the second pass to those of the first.
-void append(DetectionResult&& more, DetectionResult& pass) {
+void append(DetectionResult&& more, DetectionResult& detections) {
   constexpr double kBetween_s = 1.0;
-  BoardObservations &all = pass.cameras.front(), &added = more.cameras.front();
-  if (more.resolutions_px != pass.resolutions_px)
+  BoardObservations &all = detections.cameras.front(), &added = more.cameras.front();
+  if (more.resolutions_px != detections.resolutions_px)
     throw badInput(all.camera, "its recordings have different resolutions", "Give recordings of one camera");
   const double later_s = all.windows.empty() ? 0.0 : all.windows.back().time_s + kBetween_s;
   for (WindowReport& window : added.windows) window.time_s += later_s;
@@ -74,7 +74,7 @@ void append(DetectionResult&& more, DetectionResult& pass) {
   all.events += added.events;
   all.windows.insert(all.windows.end(), added.windows.begin(), added.windows.end());
   all.views.insert(all.views.end(), added.views.begin(), added.views.end());
-  pass.faults.insert(pass.faults.end(), more.faults.begin(), more.faults.end());
+  detections.faults.insert(detections.faults.end(), more.faults.begin(), more.faults.end());
 }
 
 // One recording after the other; recordings without blinking are reported and excluded if others blink.
@@ -88,11 +88,11 @@ DetectionResult passOver(const Session& alone, const RunContext& context) {
     one.recording = recording;
     one.more_recordings.clear();
     try {
-      DetectionResult pass = readAndDetect(one, {CameraLens{}}, context);
+      DetectionResult detections = readAndDetect(one, {CameraLens{}}, context);
       if (all)
-        append(std::move(pass), *all);
+        append(std::move(detections), *all);
       else
-        all = std::move(pass);
+        all = std::move(detections);
     } catch (const CalibrationError& error) {
       if (error.kind() == ErrorKind::BadInput || recordings.size() == 1) throw;
       context.progress.log(LogLevel::Warning,
@@ -112,11 +112,11 @@ void tellPass(const IntrinsicsRun& run, const RunContext& context) {
 IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) {
   context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
   IntrinsicsRun run;
-  run.pass = passOver(alone, context);
-  if (alone.board_blinks && run.pass.cameras.front().kind == CameraKind::Events)
-    checkBlinkingBoardSeen(run.pass.cameras.front(), alone.board);
-  checkBoardSeen(run.pass.cameras.front(), alone.board, run.pass.faults);
-  run.result = estimate(alone, run.pass, {}, context, run.story);
+  run.detections = passOver(alone, context);
+  if (alone.board_blinks && run.detections.cameras.front().kind == CameraKind::Events)
+    checkBlinkingBoardSeen(run.detections.cameras.front(), alone.board);
+  checkBoardSeen(run.detections.cameras.front(), alone.board, run.detections.faults);
+  run.result = estimate(alone, run.detections, {}, context, run.story);
   run.result.passes = 1;
   tellPass(run, context);
   return run;
@@ -128,17 +128,17 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
   lens.detection_intrinsics = bootstrapIntrinsics(alone, context);
   IntrinsicsRun run;
   std::optional<CameraIntrinsics> start;
-  for (int pass = 1; pass <= alone.options.intrinsics->max_passes; ++pass) {
+  for (int number = 1; number <= alone.options.intrinsics->max_passes; ++number) {
     context.progress.stageStarted(nameOf(CalibrationStage::Intrinsics));
-    run.pass = readAndDetect(alone, {lens}, context);
-    if (run.pass.cameras.front().views.empty())
+    run.detections = readAndDetect(alone, {lens}, context);
+    if (run.detections.cameras.front().views.empty())
       if (const std::optional<CalibrationError> blink = unexpectedBlink(alone, 0))
         throw CalibrationError(*blink);
-    checkBoardSeen(run.pass.cameras.front(), alone.board, run.pass.faults);
+    checkBoardSeen(run.detections.cameras.front(), alone.board, run.detections.faults);
     std::vector<TriedModel> tried = std::move(run.story.tried);
-    run.result = estimate(alone, run.pass, start, context, run.story);
+    run.result = estimate(alone, run.detections, start, context, run.story);
     if (start) run.story.tried = std::move(tried);
-    run.result.passes = pass;
+    run.result.passes = number;
     const CameraIntrinsics found = run.result.intrinsics;
     const auto moved = lens.detection_intrinsics
                            ? std::optional(projectionDifference(found, *lens.detection_intrinsics))
@@ -147,7 +147,7 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
     if (moved) run.result.moved_px = moved->rms_px;
     tellPass(run, context);
     if (!moved) continue;
-    context.progress.log(LogLevel::Debug, fmt::format("pass {}: {} views, changed by {:.4f} px", pass,
+    context.progress.log(LogLevel::Debug, fmt::format("pass {}: {} views, changed by {:.4f} px", number,
                                                       run.result.views_found, moved->rms_px));
     if (kRefitShare * moved->rms_px < alone.options.intrinsics->settled_px) break;
   }
@@ -161,7 +161,7 @@ IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, co
   const Session alone = cameraAlone(session, camera);
   const bool events = SessionRecording(alone).camera(0).type == StreamType::Events && !alone.board_blinks;
   IntrinsicsRun run = events ? fromEvents(alone, context) : fromSensorPixels(alone, context);
-  checkBoardSize(run.pass.cameras.front(), alone.board, alone.options.front_end->extent);
+  checkBoardSize(run.detections.cameras.front(), alone.board, alone.options.front_end->extent);
   run.result.elapsed_s = stopwatch.elapsed_s();
   return run;
 }

@@ -4,7 +4,7 @@
 
 #include "core/base/progress.h"
 #include "core/data/intrinsics_result.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace evical {
 
 struct IntrinsicsRun {
   IntrinsicsResult result;
-  IntrinsicsStory story;  // models tried by the first pass, views used by the last one
-  DetectionResult pass;   // the last one, of this camera only
+  IntrinsicsStory story;       // models tried by the first pass, views used by the last one
+  DetectionResult detections;  // the last one, of this camera only
 };
 
 // Ignores the session's intrinsics of the camera, and its IMUs. Progress has the stages "first look" and, for

@@ -2,7 +2,7 @@
 
 #include "core/export/export_text.h"
 #include "core/export/kalibr_text.h"
-#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/detection/session_recording.h"
 #include "core/report/detections_csv.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ NamedIntrinsics namedIntrinsics(const SessionCamera& camera, const IntrinsicsRun
                                 const std::string& version) {
   NamedIntrinsics named{camera.name, camera.stream, version, run.result, run.story};
   if (std::string note = reversalNote(camera); !note.empty()) named.notes.push_back(std::move(note));
-  for (const RecordingFault& fault : run.pass.faults) named.notes.push_back(fault.text);
+  for (const RecordingFault& fault : run.detections.faults) named.notes.push_back(fault.text);
   return named;
 }
 

@@ -6,7 +6,7 @@
 #include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/data/imu_stamps.h"
-#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/detection/session_recording.h"
 #include "core/recording/separate_imu.h"
 
 #include <fmt/format.h>

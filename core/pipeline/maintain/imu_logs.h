@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/data/imu_units.h"
-#include "core/pipeline/pass/merged_streams.h"
+#include "core/pipeline/detection/merged_streams.h"
 #include "core/recording/separate_imu.h"
 #include "core/report/result_yaml.h"
 

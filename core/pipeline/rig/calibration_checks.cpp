@@ -8,9 +8,9 @@
 #include "core/initialisation/agreement_check.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/numerics/robust.h"
-#include "core/pipeline/pass/board_size_check.h"
-#include "core/pipeline/pass/camera_views.h"
-#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/detection/board_size_check.h"
+#include "core/pipeline/detection/camera_views.h"
+#include "core/pipeline/detection/view_rejection.h"
 #include "core/pipeline/rig/detected_recording.h"
 #include "core/pipeline/rig/wrong_inputs.h"
 #include "core/recording/inspection.h"
@@ -137,7 +137,7 @@ double durationOf(const ImuData& imu) {
   return imu.samples.empty() ? 0.0 : secondsSince(imu.samples.front().time_ns, imu.samples.back().time_ns);
 }
 
-void checkDuration(const Session& session, const DetectionResult& pass) {
+void checkDuration(const Session& session, const DetectionResult& detections) {
   const double min_s = session.options.initialisation->min_overlap_s;
   const auto check = [&](const std::string& sensor, double duration_s) {
     if (duration_s >= min_s) return;
@@ -147,14 +147,14 @@ void checkDuration(const Session& session, const DetectionResult& pass) {
             fmt::format("the recording is too short: {:.2f} s, at least {:.2f} s are required{}", duration_s,
                         min_s, session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
             "Record at least 20 s of varied motion"),
-        session, pass.cameras.front(), pass.imus);
+        session, detections.cameras.front(), detections.imus);
   };
-  for (const BoardObservations& camera : pass.cameras) check(camera.camera, durationOf(camera));
-  for (const ImuData& imu : pass.imus) check(imu.name, durationOf(imu));
+  for (const BoardObservations& camera : detections.cameras) check(camera.camera, durationOf(camera));
+  for (const ImuData& imu : detections.imus) check(imu.name, durationOf(imu));
 }
 
-void logDetections(const DetectionResult& pass, const RunContext& context) {
-  for (const BoardObservations& camera : pass.cameras) {
+void logDetections(const DetectionResult& detections, const RunContext& context) {
+  for (const BoardObservations& camera : detections.cameras) {
     const bool windows = camera.kind == CameraKind::Events;
     context.progress.log(LogLevel::Info,
                          fmt::format("{}: {} {}, board in {} of {} {} ({})", camera.camera, camera.events,
@@ -166,9 +166,10 @@ void logDetections(const DetectionResult& pass, const RunContext& context) {
 }
 
 // A log that ends early, say: the reason why many views are not used.
-void tellUncovered(const DetectionResult& pass, double min_coverage, std::vector<RecordingFault>& faults) {
-  for (const BoardObservations& camera : pass.cameras) {
-    for (const ImuData& imu : pass.imus) {
+void tellUncovered(const DetectionResult& detections, double min_coverage,
+                   std::vector<RecordingFault>& faults) {
+  for (const BoardObservations& camera : detections.cameras) {
+    for (const ImuData& imu : detections.imus) {
       const double camera_s = durationOf(camera), imu_s = durationOf(imu);
       if (imu_s >= min_coverage * camera_s) continue;
       addUnlessListed(
@@ -236,31 +237,31 @@ void checkSession(const Session& session) {
   }
 }
 
-void checkPass(const Session& session, const RunContext& context, DetectionResult& pass) {
-  for (std::size_t k = 0; k < pass.imus.size(); ++k) {
-    const ImuData& imu = pass.imus[k];
+void checkPass(const Session& session, const RunContext& context, DetectionResult& detections) {
+  for (std::size_t k = 0; k < detections.imus.size(); ++k) {
+    const ImuData& imu = detections.imus[k];
     if (k < session.imus.size()) checkBothSensors(imu, session.imus[k]);
     checkStampsApart(imu);
     checkAxesAlive(imu);
     checkUnits(imu, k < session.imus.size() ? &session.imus[k] : nullptr, *session.options.initialisation);
     for (const RecordingFault& fault : checkImu(imu.name, imu.samples))
       if (fault.kind != FaultKind::Encoding)
-        addUnlessListed(fault, pass.faults);  // of stamps: named while reading
+        addUnlessListed(fault, detections.faults);  // of stamps: named while reading
   }
-  for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
-    const std::optional<RecordingFault> unseen = unseenCircles(pass.cameras[k], session.boardOf(k));
-    if (unseen) addUnlessListed(*unseen, pass.faults);
+  for (std::size_t k = 0; k < detections.cameras.size(); ++k) {
+    const std::optional<RecordingFault> unseen = unseenCircles(detections.cameras[k], session.boardOf(k));
+    if (unseen) addUnlessListed(*unseen, detections.faults);
   }
-  tellUncovered(pass, session.options.initialisation->min_imu_coverage, pass.faults);
-  for (const RecordingFault& fault : pass.faults) context.progress.log(LogLevel::Warning, fault.text);
-  logDetections(pass, context);
-  checkDuration(session, pass);
-  for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
-    const BoardObservations& camera = pass.cameras[k];
+  tellUncovered(detections, session.options.initialisation->min_imu_coverage, detections.faults);
+  for (const RecordingFault& fault : detections.faults) context.progress.log(LogLevel::Warning, fault.text);
+  logDetections(detections, context);
+  checkDuration(session, detections);
+  for (std::size_t k = 0; k < detections.cameras.size(); ++k) {
+    const BoardObservations& camera = detections.cameras[k];
     if (camera.views.empty())
       if (const std::optional<CalibrationError> blink = unexpectedBlink(session, k))
         throw CalibrationError(*blink);
-    checkBoardSeen(camera, session.boardOf(k), pass.faults);
+    checkBoardSeen(camera, session.boardOf(k), detections.faults);
     checkBoardSize(camera, session.boardOf(k), session.options.front_end->extent);
   }
 }

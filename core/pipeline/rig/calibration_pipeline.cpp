@@ -16,10 +16,10 @@
 #include "core/optimisation/uncertainty/covariance.h"
 #include "core/optimisation/uncertainty/prior_check.h"
 #include "core/optimisation/uncertainty/shared_sensors.h"
-#include "core/pipeline/pass/board_size_check.h"
-#include "core/pipeline/pass/recording_pass.h"
-#include "core/pipeline/pass/session_recording.h"
-#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/detection/board_size_check.h"
+#include "core/pipeline/detection/recording_pass.h"
+#include "core/pipeline/detection/session_recording.h"
+#include "core/pipeline/detection/view_rejection.h"
 #include "core/pipeline/rig/calibrated_lenses.h"
 #include "core/pipeline/rig/calibration_checks.h"
 #include "core/pipeline/rig/detected_recording.h"
@@ -92,11 +92,11 @@ class Calibration {
     });
   }
 
-  CalibrationOutcome fromDetections(DetectionResult pass,
+  CalibrationOutcome fromDetections(DetectionResult detections,
                                     std::vector<std::optional<IntrinsicsResult>> intrinsics) {
-    run_.pass = std::move(pass);
+    run_.detections = std::move(detections);
     run_.intrinsics = std::move(intrinsics);
-    before_s_ = std::max(run_.pass.read_s, run_.pass.detect_s);
+    before_s_ = std::max(run_.detections.read_s, run_.detections.detect_s);
     return outcomeOf([this] {
       checkSession(session_);
       prepareInput();
@@ -104,9 +104,9 @@ class Calibration {
     });
   }
 
-  InitialisedCalibration toInitialState(DetectionResult pass,
+  InitialisedCalibration toInitialState(DetectionResult detections,
                                         std::vector<std::optional<IntrinsicsResult>> intrinsics) {
-    run_.pass = std::move(pass);
+    run_.detections = std::move(detections);
     run_.intrinsics = std::move(intrinsics);
     checkSession(session_);
     prepareInput();
@@ -137,7 +137,7 @@ class Calibration {
     }
     if (outcome.error) tellCause(outcome);
     returnPass();
-    outcome.pass = std::move(run_.pass);
+    outcome.detections = std::move(run_.detections);
     return outcome;
   }
 
@@ -157,10 +157,11 @@ class Calibration {
   // Replaces the error by the wrong input that caused it.
   void tellCause(CalibrationOutcome& outcome) {
     try {
-      const DetectionResult& pass = run_.pass;
-      if (input_.cameras.empty() && pass.cameras.size() == session_.cameras.size() &&
-          pass.lenses.size() == pass.cameras.size() && pass.imus.size() == session_.imus.size())
-        input_ = makeInput(session_, run_.pass);  // the checks of the pass failed
+      const DetectionResult& detections = run_.detections;
+      if (input_.cameras.empty() && detections.cameras.size() == session_.cameras.size() &&
+          detections.lenses.size() == detections.cameras.size() &&
+          detections.imus.size() == session_.imus.size())
+        input_ = makeInput(session_, run_.detections);  // the checks of the pass failed
       if (!mirrored_)
         outcome.error =
             withWrongInput(*outcome.error, session_, input_, initial_, recording_is_there_, context_);
@@ -189,23 +190,23 @@ class Calibration {
   }
 
   void detect() {
-    run_.pass = readAndDetect(session_, lenses_, context_);
+    run_.detections = readAndDetect(session_, lenses_, context_);
     prepareInput();
   }
 
   void prepareInput() {
-    rejectAsIn(session_, run_.pass);
-    checkPass(session_, context_, run_.pass);
-    input_ = makeInput(session_, run_.pass);
+    rejectAsIn(session_, run_.detections);
+    checkPass(session_, context_, run_.detections);
+    input_ = makeInput(session_, run_.detections);
     if (context_.observer != nullptr) context_.observer->detectionDone(input_);
   }
 
   // Returns the input's data to the pass, with the views that were removed.
   void returnPass() {
-    restorePass(std::exchange(input_, {}), run_.pass);
+    restorePass(std::exchange(input_, {}), run_.detections);
     for (std::size_t k = 0; k < whole_views_.size(); ++k)
       if (std::optional<std::vector<BoardView>> whole = std::exchange(whole_views_[k], std::nullopt))
-        run_.pass.cameras[k].views = std::move(*whole);
+        run_.detections.cameras[k].views = std::move(*whole);
   }
 
   void initialiseState() {
@@ -307,7 +308,7 @@ class Calibration {
       if (const double moved_px = corners_outwards_px_[k]; moved_px != 0.0)
         run_.result.notes.push_back(fmt::format(
             "{}: measured tag corners are {:.2f} px too far {} the middle of their tag; this is corrected",
-            run_.pass.cameras[k].camera, std::abs(moved_px), moved_px > 0.0 ? "towards" : "from"));
+            run_.detections.cameras[k].camera, std::abs(moved_px), moved_px > 0.0 ? "towards" : "from"));
   }
 
   // Before views of the input are changed, which belong to the pass.
@@ -376,7 +377,8 @@ class Calibration {
     wrong_noise_ = wrongNoise(session_, input_, solution);
     judge(solution, heldDoubt(uncertainty, !priors.doubt.empty()), uncertainty.change);
     if (result.status == CalibrationStatus::Doubtful) {
-      flagDoubtful(scatteringStampsIn(input_, solution, run_.pass.faults, options), result, "stamp_jitter");
+      flagDoubtful(scatteringStampsIn(input_, solution, run_.detections.faults, options), result,
+                   "stamp_jitter");
       flagDoubtful(saturation(), result);
     }
     flagDoubtful(initial_.mirror_doubt, result, "mirrored_image");
@@ -384,7 +386,7 @@ class Calibration {
     referToPass(result.circle_residuals);
     result.state = std::move(solution.state);
     result.uncertainty = std::move(uncertainty.report);
-    addStampErrors(input_, run_.pass.imu_stamp_steps_s, options, result);
+    addStampErrors(input_, run_.detections.imu_stamp_steps_s, options, result);
     run_.as_weighed = std::move(uncertainty.as_weighed);
     result.latencies = sensorLatencies(input_, result.state, result.uncertainty);
     result.cameras = std::move(solution.cameras);
@@ -447,7 +449,7 @@ class Calibration {
       if (const std::optional<Cause> found = findCause(input_, solution, options, context_))
         cause = {found->text, found->repair, causeName(found->kind), found->explains};
     if (cause.text.empty() && !misfit.failure.empty())
-      cause = {scatteringStampsIn(input_, solution, run_.pass.faults, options), {}, "stamp_jitter"};
+      cause = {scatteringStampsIn(input_, solution, run_.detections.faults, options), {}, "stamp_jitter"};
     if (!misfit.failure.empty()) {
       std::erase_if(run_.result.causes, [](const QualityWarning& each) { return !isWrongInput(each); });
       flagDoubtful(misfit.failure, run_.result, "misfit");
@@ -493,10 +495,10 @@ class Calibration {
   }
 
   void tellRejected() {
-    for (std::size_t k = 0; k < run_.pass.cameras.size(); ++k) {
-      for (const double time_s : rejectedTimes_s(run_.pass.cameras[k]))
+    for (std::size_t k = 0; k < run_.detections.cameras.size(); ++k) {
+      for (const double time_s : rejectedTimes_s(run_.detections.cameras[k]))
         run_.result.rejected_windows.push_back({k, time_s});
-      if (std::string rejected = rejectedSentence(run_.pass.cameras[k]); !rejected.empty())
+      if (std::string rejected = rejectedSentence(run_.detections.cameras[k]); !rejected.empty())
         run_.result.notes.push_back(std::move(rejected));
     }
   }
@@ -506,7 +508,7 @@ class Calibration {
     if (const std::optional<QualityWarning> unit = wrongUnit(session_, input_, result, context_))
       flagDoubtful(*unit, result);
     returnPass();
-    result.start_ns = run_.pass.start_ns;
+    result.start_ns = run_.detections.start_ns;
     result.freed = freed_;
     noteCornersOfTags();
     for (const QualityWarning& freed : freed_)
@@ -515,12 +517,12 @@ class Calibration {
     tellRejected();
     for (const SessionCamera& camera : session_.cameras)
       if (std::string note = reversalNote(camera); !note.empty()) result.notes.push_back(std::move(note));
-    for (const RecordingFault& fault : run_.pass.faults) result.notes.push_back(fault.text);
+    for (const RecordingFault& fault : run_.detections.faults) result.notes.push_back(fault.text);
     result.notes.insert(result.notes.end(), initial_.warnings.begin(), initial_.warnings.end());
     result.notes.insert(result.notes.end(), notes_.begin(), notes_.end());
     Timing& timing = result.timing;
-    timing.read_s = run_.pass.read_s;  // of overlapping threads; also for a pass of an earlier run
-    timing.detect_s = run_.pass.detect_s;
+    timing.read_s = run_.detections.read_s;  // of overlapping threads; also for a pass of an earlier run
+    timing.detect_s = run_.detections.detect_s;
     timing.total_s = before_s_ + stopwatch_.elapsed_s();
     result.memory_peak_mb = peakMemory_mb();
     setLensSigmas(session_, run_);
@@ -567,24 +569,25 @@ CalibrationOutcome runCalibration(const Session& session, const RunContext& cont
   return Calibration(session, context).fromRecording();
 }
 
-CalibrationOutcome runCalibration(const Session& session, DetectionResult pass, const RunContext& context,
+CalibrationOutcome runCalibration(const Session& session, DetectionResult detections,
+                                  const RunContext& context,
                                   std::vector<std::optional<IntrinsicsResult>> intrinsics) {
-  return Calibration(session, context).fromDetections(std::move(pass), std::move(intrinsics));
+  return Calibration(session, context).fromDetections(std::move(detections), std::move(intrinsics));
 }
 
-InitialisedCalibration initialiseCalibration(const Session& session, DetectionResult pass,
+InitialisedCalibration initialiseCalibration(const Session& session, DetectionResult detections,
                                              const RunContext& context,
                                              std::vector<std::optional<IntrinsicsResult>> intrinsics) {
-  return Calibration(session, context).toInitialState(std::move(pass), std::move(intrinsics));
+  return Calibration(session, context).toInitialState(std::move(detections), std::move(intrinsics));
 }
 
 CalibrationRun calibrate(const Session& session, const RunContext& context) {
   return runCalibration(session, context).runOrThrow();
 }
 
-CalibrationRun calibrate(const Session& session, DetectionResult pass, const RunContext& context,
+CalibrationRun calibrate(const Session& session, DetectionResult detections, const RunContext& context,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics) {
-  return runCalibration(session, std::move(pass), context, std::move(intrinsics)).runOrThrow();
+  return runCalibration(session, std::move(detections), context, std::move(intrinsics)).runOrThrow();
 }
 
 }  // namespace evical

@@ -7,7 +7,7 @@
 #include "core/data/calibration_setup.h"
 #include "core/data/intrinsics_result.h"
 #include "core/initialisation/initialise.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 
 #include <optional>
@@ -17,7 +17,7 @@ namespace evical {
 
 struct CalibrationRun {
   CalibrationResult result;
-  DetectionResult pass;
+  DetectionResult detections;
   // By camera: calibration of a lens that the session does not give. Empty: all are given. The lens in use is
   // in the result's state.
   std::vector<std::optional<IntrinsicsResult>> intrinsics;
@@ -33,7 +33,7 @@ struct CalibrationOutcome {
   RunStatus status = RunStatus::Done;
   std::optional<CalibrationError> error;  // why it failed
   std::optional<CalibrationRun> run;      // present if and only if status is Done
-  DetectionResult pass;                   // if not Done: data read and detected until then, or empty
+  DetectionResult detections;             // if not Done: data read and detected until then, or empty
 
   CalibrationRun runOrThrow() &&;  // throws the error, or Cancelled, if there is no run
 };
@@ -46,12 +46,13 @@ CalibrationOutcome runCalibration(const Session& session, const RunContext& cont
 // The same from detections and IMU samples: `pass` from readAndDetect, restoreDetections or a simulation,
 // with the lenses used for detection. `intrinsics`: results of an earlier run for lenses that were not given,
 // see CalibrationRun.
-CalibrationOutcome runCalibration(const Session& session, DetectionResult pass, const RunContext& context,
+CalibrationOutcome runCalibration(const Session& session, DetectionResult detections,
+                                  const RunContext& context,
                                   std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 
 // Both without an outcome: they return the run. Throw CalibrationError, and Cancelled when asked to stop.
 CalibrationRun calibrate(const Session& session, const RunContext& context);
-CalibrationRun calibrate(const Session& session, DetectionResult pass, const RunContext& context,
+CalibrationRun calibrate(const Session& session, DetectionResult detections, const RunContext& context,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 
 // Input and initial state of the batch.
@@ -61,7 +62,7 @@ struct InitialisedCalibration {
 };
 
 // Runs all checks and stages before the batch. Throws CalibrationError, and Cancelled when asked to stop.
-InitialisedCalibration initialiseCalibration(const Session& session, DetectionResult pass,
+InitialisedCalibration initialiseCalibration(const Session& session, DetectionResult detections,
                                              const RunContext& context,
                                              std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 

@@ -3,8 +3,8 @@
 #include "core/data/calibration_observer.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/optimisation/optimisation_options.h"
+#include "core/pipeline/detection/session_recording.h"
 #include "core/pipeline/lens/intrinsics_calibration.h"
-#include "core/pipeline/pass/session_recording.h"
 #include "core/report/report_options.h"
 
 #include <fmt/format.h>
@@ -86,11 +86,11 @@ bool detectsTheSame(const Session& one, const Session& other) {
 }
 
 DetectedRecording forSession(DetectedRecording detected, const Session& session) {
-  for (std::size_t k = 0; k < detected.pass.cameras.size(); ++k)
-    detected.pass.cameras[k].camera = session.cameras.at(k).name;
-  for (std::size_t k = 0; k < detected.pass.imus.size(); ++k) {
-    detected.pass.imus[k].name = session.imus.at(k).name;
-    detected.pass.imus[k].noise = session.imus.at(k).noise;
+  for (std::size_t k = 0; k < detected.detections.cameras.size(); ++k)
+    detected.detections.cameras[k].camera = session.cameras.at(k).name;
+  for (std::size_t k = 0; k < detected.detections.imus.size(); ++k) {
+    detected.detections.imus[k].name = session.imus.at(k).name;
+    detected.detections.imus[k].noise = session.imus.at(k).noise;
   }
   return detected;
 }

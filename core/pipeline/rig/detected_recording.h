@@ -3,7 +3,7 @@
 
 #include "core/base/progress.h"
 #include "core/data/intrinsics_result.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 
 #include <optional>
@@ -12,7 +12,7 @@
 namespace evical {
 
 struct DetectedRecording {
-  DetectionResult pass;
+  DetectionResult detections;
   std::vector<std::optional<IntrinsicsResult>> intrinsics;  // as CalibrationRun has them
 };
 

@@ -59,7 +59,11 @@ class Assessor {
   // `no_lens`: why a lens that is not given could not be calibrated; circles are then in raw pixels.
   Assessor(const Session& session, const DetectedRecording& detected, const RunContext& context,
            const CalibrationError* no_lens = nullptr)
-      : session_(session), pass_(detected.pass), detected_(detected), context_(context), no_lens_(no_lens) {}
+      : session_(session),
+        pass_(detected.detections),
+        detected_(detected),
+        context_(context),
+        no_lens_(no_lens) {}
 
   RecordingAssessment run() {
     context_.progress.stageStarted(kStage);

@@ -6,7 +6,7 @@
 #include "core/base/progress.h"
 #include "core/export/export_target.h"
 #include "core/optimisation/optimisation_options.h"
-#include "core/pipeline/pass/saved_detections.h"
+#include "core/pipeline/detection/saved_detections.h"
 #include "core/pipeline/runs/saved_run.h"
 #include "core/report/csv.h"
 #include "core/report/html/html_report.h"
@@ -33,7 +33,7 @@ std::vector<SeenBoard> seenBoards(const Session& session) {
 }  // namespace
 
 std::vector<FileContent> reportOf(const Session& session, const NamedResult& named,
-                                  const DetectionResult& pass,
+                                  const DetectionResult& detections,
                                   std::span<const std::optional<IntrinsicsResult>> intrinsics,
                                   const CalibrationCheck* check) {
   const OptimisationOptions& options = *session.options.optimisation;
@@ -41,12 +41,12 @@ std::vector<FileContent> reportOf(const Session& session, const NamedResult& nam
       named,
       session.recording.filename().string(),
       seenBoards(session),
-      pass.start_ns,
-      pass.cameras,
-      pass.lenses,
-      pass.imus,
-      pass.resolutions_px,
-      pass.faults,
+      detections.start_ns,
+      detections.cameras,
+      detections.lenses,
+      detections.imus,
+      detections.resolutions_px,
+      detections.faults,
       {options.needed_rotation_deg, options.needed_translation_mm, options.needed_time_offset_ms},
       intrinsics,
       check};
@@ -57,10 +57,10 @@ std::vector<FileContent> reportOf(const Session& session, const NamedResult& nam
 
 namespace {
 
-void addReport(const Session& session, const NamedResult& named, const DetectionResult& pass,
+void addReport(const Session& session, const NamedResult& named, const DetectionResult& detections,
                std::vector<FileContent>& files,
                std::span<const std::optional<IntrinsicsResult>> intrinsics = {}) {
-  for (FileContent& file : reportOf(session, named, pass, intrinsics)) files.push_back(std::move(file));
+  for (FileContent& file : reportOf(session, named, detections, intrinsics)) files.push_back(std::move(file));
 }
 
 // Failing exports are reported and do not affect the result.
@@ -99,10 +99,10 @@ NamedResult namedResult(const Session& session, std::shared_ptr<const Calibratio
 NamedResult namedRun(const Session& session, const std::shared_ptr<const CalibrationRun>& run,
                      const std::string& version) {
   NamedResult named = namedResult(session, resultOf(run), version);
-  for (std::size_t i = 0; i < named.imus.size() && i < run->pass.imus.size(); ++i)
-    named.imus[i].rate_hz = run->pass.imus[i].rate_hz();
-  for (std::size_t i = 0; i < named.cameras.size() && i < run->pass.cameras.size(); ++i)
-    named.cameras[i].kind = run->pass.cameras[i].kind;
+  for (std::size_t i = 0; i < named.imus.size() && i < run->detections.imus.size(); ++i)
+    named.imus[i].rate_hz = run->detections.imus[i].rate_hz();
+  for (std::size_t i = 0; i < named.cameras.size() && i < run->detections.cameras.size(); ++i)
+    named.cameras[i].kind = run->detections.cameras[i].kind;
   return named;
 }
 
@@ -121,11 +121,11 @@ ExportRemarks writeResultFiles(const std::filesystem::path& folder, const Sessio
   const auto writeAll = [&](const std::vector<FileContent>& contents) {
     std::for_each(contents.begin(), contents.end(), write);
   };
-  writeAll(detectionFiles(session, run.pass, run.intrinsics));
+  writeAll(detectionFiles(session, run.detections, run.intrinsics));
   write({"trajectory.csv", trajectoryCsv(run.result.state)});
   const std::string biases = biasesCsv(named);
   if (!biases.empty()) write({"biases.csv", biases});
-  writeAll(reportOf(session, named, run.pass, run.intrinsics));
+  writeAll(reportOf(session, named, run.detections, run.intrinsics));
   std::vector<FileContent> exported;
   ExportRemarks remarks = addExports(named, session, exported);
   writeAll(exported);
@@ -157,26 +157,26 @@ std::vector<ExportCheck> checkExports(const std::filesystem::path& folder,
 }
 
 void writeDetectionFiles(const std::filesystem::path& folder, const Session& session,
-                         const DetectionResult& pass, const std::string& log) {
+                         const DetectionResult& detections, const std::string& log) {
   std::vector<FileContent> files = {{"log.txt", log}};
-  for (FileContent& file : detectionFiles(session, pass, {})) files.push_back(std::move(file));
+  for (FileContent& file : detectionFiles(session, detections, {})) files.push_back(std::move(file));
   for (FileContent& file : files) file.path = folder / file.path;
   writeFilesWhole(files);
 }
 
 void writeFailure(const std::filesystem::path& folder, const Session& session, const QualityWarning& cause,
-                  const std::string& version, const std::string& log, const DetectionResult& pass) {
+                  const std::string& version, const std::string& log, const DetectionResult& detections) {
   const auto failed = std::make_shared<CalibrationResult>();
   failed->status = CalibrationStatus::Failed;
   failed->reason = cause.text;
   failed->repair = cause.repair;
   failed->causes = {cause};
-  if (!pass.cameras.empty() || !pass.imus.empty()) failed->start_ns = pass.start_ns;
-  failed->timing.read_s = pass.read_s;
-  failed->timing.detect_s = pass.detect_s;
+  if (!detections.cameras.empty() || !detections.imus.empty()) failed->start_ns = detections.start_ns;
+  failed->timing.read_s = detections.read_s;
+  failed->timing.detect_s = detections.detect_s;
   const NamedResult named = namedResult(session, failed, version);
   std::vector<FileContent> files = {{"log.txt", log}};
-  addReport(session, named, pass, files);
+  addReport(session, named, detections, files);
   files.push_back({"result.yaml", resultYaml(named)});
   writeExportedFiles(folder, files);
 }

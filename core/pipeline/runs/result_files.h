@@ -29,7 +29,7 @@ std::shared_ptr<const CalibrationResult> resultOf(const std::shared_ptr<const Ca
 
 // report.html with its plots/*.csv. `check`: check of an older result with this recording.
 std::vector<FileContent> reportOf(const Session& session, const NamedResult& named,
-                                  const DetectionResult& pass,
+                                  const DetectionResult& detections,
                                   std::span<const std::optional<IntrinsicsResult>> intrinsics,
                                   const CalibrationCheck* check = nullptr);
 
@@ -53,11 +53,11 @@ std::vector<ExportCheck> checkExports(const std::filesystem::path& folder,
 
 // Writes the files of saved_detections.h, and log.txt.
 void writeDetectionFiles(const std::filesystem::path& folder, const Session& session,
-                         const DetectionResult& pass, const std::string& log);
+                         const DetectionResult& detections, const std::string& log);
 
 // Writes result.yaml with status failed and the reason, a report of the data in `pass`, and log.txt; only if
 // the folder exists.
 void writeFailure(const std::filesystem::path& folder, const Session& session, const QualityWarning& cause,
-                  const std::string& version, const std::string& log, const DetectionResult& pass = {});
+                  const std::string& version, const std::string& log, const DetectionResult& detections = {});
 
 }  // namespace evical

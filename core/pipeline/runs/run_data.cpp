@@ -240,25 +240,27 @@ bool isWhole(const BoardObservations& camera) {
   return isWhole(camera.views) && std::is_sorted(camera.windows.begin(), camera.windows.end(), earlier);
 }
 
-bool isWhole(const DetectionResult& pass) {
+bool isWhole(const DetectionResult& detections) {
   const auto whole = [](const auto& each) { return isWhole(each); };
-  return isTime(pass.start_ns) && pass.lenses.size() == pass.cameras.size() &&
-         pass.resolutions_px.size() == pass.cameras.size() &&
-         (pass.rejected_views.empty() || pass.rejected_views.size() == pass.cameras.size()) &&
-         std::all_of(pass.rejected_views.begin(), pass.rejected_views.end(), whole) &&
-         std::all_of(pass.cameras.begin(), pass.cameras.end(), whole) &&
-         std::all_of(pass.imus.begin(), pass.imus.end(), whole);
+  return isTime(detections.start_ns) && detections.lenses.size() == detections.cameras.size() &&
+         detections.resolutions_px.size() == detections.cameras.size() &&
+         (detections.rejected_views.empty() ||
+          detections.rejected_views.size() == detections.cameras.size()) &&
+         std::all_of(detections.rejected_views.begin(), detections.rejected_views.end(), whole) &&
+         std::all_of(detections.cameras.begin(), detections.cameras.end(), whole) &&
+         std::all_of(detections.imus.begin(), detections.imus.end(), whole);
 }
 
 // Residuals must refer to existing views and circles.
-bool fits(const CalibrationResult& result, const DetectionResult& pass) {
-  return result.state.cameras.size() == pass.cameras.size() && result.state.imus.size() == pass.imus.size() &&
+bool fits(const CalibrationResult& result, const DetectionResult& detections) {
+  return result.state.cameras.size() == detections.cameras.size() &&
+         result.state.imus.size() == detections.imus.size() &&
          std::all_of(result.circle_residuals.begin(), result.circle_residuals.end(),
                      [&](const CircleResidual& r) {
-                       return r.camera >= 0 && static_cast<std::size_t>(r.camera) < pass.cameras.size() &&
-                              r.view >= 0 &&
+                       return r.camera >= 0 &&
+                              static_cast<std::size_t>(r.camera) < detections.cameras.size() && r.view >= 0 &&
                               static_cast<std::size_t>(r.view) <
-                                  pass.cameras[static_cast<std::size_t>(r.camera)].views.size() &&
+                                  detections.cameras[static_cast<std::size_t>(r.camera)].views.size() &&
                               r.circle >= 0;
                      });
 }
@@ -291,7 +293,7 @@ bool readWhole(const Hdf5Source& datasets, std::size_t most, const std::string& 
 void addParts(const CalibrationRun& run, const TextSink& sink) {
   addPart("result", run.result, sink);
   addPart("intrinsics", run.intrinsics, sink);
-  addPart("observations", run.pass, sink);
+  addPart("observations", run.detections, sink);
 }
 
 // True for files without a checksum, which older versions wrote. Reads only the first part.
@@ -362,9 +364,9 @@ ReadRunData runFrom(const Hdf5Source& datasets, std::size_t most) {
   constexpr const char* kSeen = "detections of the board, and IMU samples";
   read.has_result = readPart("result", "trajectory, convergence and residuals", read.run.result);
   readPart("intrinsics", "calibration of the lenses", read.run.intrinsics);
-  read.has_pass = readPart("observations", kSeen, read.run.pass);
-  if (read.has_result && read.has_pass && !fits(read.run.result, read.run.pass)) {
-    read.run.pass = {};
+  read.has_pass = readPart("observations", kSeen, read.run.detections);
+  if (read.has_result && read.has_pass && !fits(read.run.result, read.run.detections)) {
+    read.run.detections = {};
     read.has_pass = false;
     read.missing.push_back(fmt::format("{}: this part is of another run", kSeen));
   }

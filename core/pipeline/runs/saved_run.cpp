@@ -2,7 +2,7 @@
 
 #include "core/base/file_places.h"
 #include "core/base/yaml_node.h"
-#include "core/pipeline/pass/detections_check.h"
+#include "core/pipeline/detection/detections_check.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/run_data.h"
 #include "core/pipeline/session/given_points.h"
@@ -174,9 +174,9 @@ class FolderReader {
     if (!data.has_result && !named_) throw CalibrationError(*result_error_);
     if (data.has_result) run_.result = std::move(data.run.result);
     run_.intrinsics = std::move(data.run.intrinsics);
-    has_pass_ = data.has_pass && data.run.pass.cameras.size() == run_.result.state.cameras.size() &&
-                data.run.pass.imus.size() == run_.result.state.imus.size();
-    if (has_pass_) run_.pass = std::move(data.run.pass);
+    has_pass_ = data.has_pass && data.run.detections.cameras.size() == run_.result.state.cameras.size() &&
+                data.run.detections.imus.size() == run_.result.state.imus.size();
+    if (has_pass_) run_.detections = std::move(data.run.detections);
     saved_.missing.insert(saved_.missing.end(), data.missing.begin(), data.missing.end());
   }
 
@@ -212,21 +212,22 @@ class FolderReader {
 
   // Reads names, views and windows from the tables.
   void readTables() {
-    run_.pass = {};
-    run_.pass.start_ns = run_.result.start_ns.value_or(0);
+    run_.detections = {};
+    run_.detections.start_ns = run_.result.start_ns.value_or(0);
     for (std::size_t k = 0; k < run_.result.state.cameras.size(); ++k) {
       const CameraLens& lens = run_.result.state.cameras[k].lens;
-      run_.pass.cameras.emplace_back();
-      run_.pass.lenses.push_back(lens);
-      run_.pass.resolutions_px.push_back(lens.inUse() ? lens.inUse()->resolution_px : Resolution{});
-      if (k < saved_.session.cameras.size()) run_.pass.cameras[k].camera = saved_.session.cameras[k].name;
+      run_.detections.cameras.emplace_back();
+      run_.detections.lenses.push_back(lens);
+      run_.detections.resolutions_px.push_back(lens.inUse() ? lens.inUse()->resolution_px : Resolution{});
+      if (k < saved_.session.cameras.size())
+        run_.detections.cameras[k].camera = saved_.session.cameras[k].name;
     }
     int points = saved_.session.board.pointCount();
     for (const SessionBoard& board : saved_.session.further_boards)
       points = std::max(points, board.board.pointCount());
     try {
       for (BoardObservations& found : readDetections(folder_, points))
-        for (BoardObservations& camera : run_.pass.cameras)
+        for (BoardObservations& camera : run_.detections.cameras)
           if (camera.camera == found.camera) camera = found;
     } catch (const CalibrationError& error) {
       note("the detections of the board", error);
@@ -239,8 +240,8 @@ class FolderReader {
     bool same = session.cameras.size() == run_.result.state.cameras.size() &&
                 session.imus.size() == run_.result.state.imus.size() &&
                 session.further_boards.size() == run_.result.state.further_boards.size();
-    for (std::size_t k = 0; same && k < run_.pass.cameras.size(); ++k)
-      for (const BoardView& view : run_.pass.cameras[k].views)
+    for (std::size_t k = 0; same && k < run_.detections.cameras.size(); ++k)
+      for (const BoardView& view : run_.detections.cameras[k].views)
         for (const CircleObservation& circle : view.circles)
           same = same && circle.circle < session.boardOf(k).pointCount();
     dropResidualsOfNoView();
@@ -253,7 +254,7 @@ class FolderReader {
   void dropResidualsOfNoView() {
     std::erase_if(run_.result.circle_residuals, [&](const CircleResidual& r) {
       return static_cast<std::size_t>(r.view) >=
-             run_.pass.cameras.at(static_cast<std::size_t>(r.camera)).views.size();
+             run_.detections.cameras.at(static_cast<std::size_t>(r.camera)).views.size();
     });
   }
 

@@ -26,7 +26,7 @@ void writeUnfinishedRun(const std::filesystem::path& folder, bool folder_was_the
   if (!cause || !std::filesystem::is_directory(folder, ignored)) return;
   // A failed run keeps an earlier result of the same folder: that is still valid for its recording.
   if (std::filesystem::exists(folder / "trajectory.csv", ignored)) return;
-  writeFailure(folder, session, *cause, version, log, outcome.pass);
+  writeFailure(folder, session, *cause, version, log, outcome.detections);
 }
 
 }  // namespace evical

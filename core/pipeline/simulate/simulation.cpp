@@ -6,7 +6,7 @@
 #include "core/base/how_to.h"
 #include "core/base/time.h"
 #include "core/frames/gray_image.h"
-#include "core/pipeline/pass/bounded_queue.h"
+#include "core/pipeline/detection/bounded_queue.h"
 #include "core/recording/recording_writer.h"
 #include "core/synthetic/event_simulator.h"
 #include "core/synthetic/frame_simulator.h"

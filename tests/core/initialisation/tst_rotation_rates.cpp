@@ -23,9 +23,9 @@ class TestRotationRates : public QObject {
     imu.gyroscope_scale_misalignment = simulated_.truth.imus[0].gyroscope_scale_misalignment;
     const SessionCamera& known = simulated_.session.cameras[0];
     const auto ratesWith = [&](const CameraState& state) {
-      return rotationRates({known.name, simulated_.pass.lenses[0], simulated_.pass.cameras[0]},
-                           simulated_.session.board, state, simulated_.pass.imus[0], imu,
-                           simulated_.pass.start_ns, {}, {});
+      return rotationRates({known.name, simulated_.detections.lenses[0], simulated_.detections.cameras[0]},
+                           simulated_.session.board, state, simulated_.detections.imus[0], imu,
+                           simulated_.detections.start_ns, {}, {});
     };
     const RotationRates rates = ratesWith(camera);
     QVERIFY(rates.time_s.size() > 200);
@@ -46,11 +46,11 @@ class TestRotationRates : public QObject {
   void rateRatio_isThatOfTheUnit() {
     QFETCH(double, times);
     const SessionCamera& known = simulated_.session.cameras[0];
-    ImuData imu = simulated_.pass.imus[0];
+    ImuData imu = simulated_.detections.imus[0];
     for (ImuSample& sample : imu.samples) sample.angular_rate_rad_s *= times;
     const std::optional<RateRatio> found =
-        rateRatio({known.name, simulated_.pass.lenses[0], simulated_.pass.cameras[0]},
-                  simulated_.session.board, imu, simulated_.pass.start_ns, {}, {});
+        rateRatio({known.name, simulated_.detections.lenses[0], simulated_.detections.cameras[0]},
+                  simulated_.session.board, imu, simulated_.detections.start_ns, {}, {});
     QVERIFY(found);
     constexpr double kTolerance = 0.03;  // the gyroscope's scale and the noise of views
     QVERIFY2(std::abs(found->ratio / times - 1.0) < kTolerance, qPrintable(QString::number(found->ratio)));
@@ -59,10 +59,10 @@ class TestRotationRates : public QObject {
   // A gyroscope of another recording, or with a mirrored axis, has no ratio.
   void rateRatio_ofAnotherMotion_isEmpty() {
     const SessionCamera& known = simulated_.session.cameras[0];
-    ImuData imu = simulated_.pass.imus[0];
+    ImuData imu = simulated_.detections.imus[0];
     for (ImuSample& sample : imu.samples) sample.angular_rate_rad_s.x() *= -1.0;
-    QVERIFY(!rateRatio({known.name, simulated_.pass.lenses[0], simulated_.pass.cameras[0]},
-                       simulated_.session.board, imu, simulated_.pass.start_ns, {}, {}));
+    QVERIFY(!rateRatio({known.name, simulated_.detections.lenses[0], simulated_.detections.cameras[0]},
+                       simulated_.session.board, imu, simulated_.detections.start_ns, {}, {}));
   }
 
   void rmsDifferences_areThoseByHand() {

@@ -55,10 +55,10 @@ class TestCheckCalibration : public QObject {
     SimulatedPass now = simulatePass(duration_s, scenario);
     const CheckInput input = checkInputOf(before_, session_);
     const CameraIntrinsics lens = *input.session.cameras.front().intrinsics;
-    seeThrough(scenario.cameras.front().intrinsics, lens, now.pass.cameras.front());
-    now.pass.lenses.front() = givenLens(lens);
-    if (spoil) spoil(now.pass);
-    return checkCalibration(input, std::move(now.pass), {});
+    seeThrough(scenario.cameras.front().intrinsics, lens, now.detections.cameras.front());
+    now.detections.lenses.front() = givenLens(lens);
+    if (spoil) spoil(now.detections);
+    return checkCalibration(input, std::move(now.detections), {});
   }
   void verifyRejected(const std::function<void(NamedResult&, Session&)>& change, const char* part) const {
     NamedResult before = before_;
@@ -79,7 +79,7 @@ class TestCheckCalibration : public QObject {
     SimulatedPass first = simulatePass(20.0, briskForCheckCalibration(3));
     session_ = first.session;
     session_.options.report.edit().split_half_check = false;
-    const CalibrationRun run = calibrate(session_, first.pass, {});
+    const CalibrationRun run = calibrate(session_, first.detections, {});
     QVERIFY(run.result.status == CalibrationStatus::Ok);
     before_ = namedResult(session_, std::make_shared<const CalibrationResult>(run.result), "test");
   }
@@ -138,17 +138,17 @@ class TestCheckCalibration : public QObject {
     const CheckRun short_one = check(3.2);
     QVERIFY2(short_one.check.verdict == Verdict::CannotTell, short_one.check.reason.c_str());
     QVERIFY(!short_one.check.advice.empty());
-    const CheckRun unseen = check(6.0, {}, [](DetectionResult& pass) {
-      for (BoardView& view : pass.cameras.front().views) view.circles.clear();
-      pass.cameras.front().views.clear();
+    const CheckRun unseen = check(6.0, {}, [](DetectionResult& detections) {
+      for (BoardView& view : detections.cameras.front().views) view.circles.clear();
+      detections.cameras.front().views.clear();
     });
     QVERIFY2(unseen.check.verdict == Verdict::CannotTell, unseen.check.reason.c_str());
   }
 
   // The camera's clock steps within the recording: its time offset changes, but not the rig.
   void spoiltRecording_isNoChange() {
-    const CheckRun checked = check(8.0, {}, [](DetectionResult& pass) {
-      for (BoardView& view : pass.cameras.front().views) {
+    const CheckRun checked = check(8.0, {}, [](DetectionResult& detections) {
+      for (BoardView& view : detections.cameras.front().views) {
         if (view.time_s < 4.0) continue;
         view.time_s += 0.02;
         for (CircleObservation& circle : view.circles) circle.time_s += 0.02;
@@ -207,7 +207,7 @@ class TestCheckCalibration : public QObject {
     first.session.options.report.edit().split_half_check = false;
     first.session.options.optimisation.edit().share_sensors = false;
     first.session.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Free;
-    const CalibrationRun run = calibrate(first.session, first.pass, {});
+    const CalibrationRun run = calibrate(first.session, first.detections, {});
     QVERIFY(intrinsicsCovariance(run.result.uncertainty, 0).rows() > 0);
     QVERIFY(intrinsicsCovariance(run.result.uncertainty, 1).rows() > 0);
     const NamedResult before =
@@ -216,7 +216,7 @@ class TestCheckCalibration : public QObject {
     QVERIFY(weighed.cameras[0].intrinsics_uncertainty.has_value());
     QVERIFY(!weighed.cameras[1].intrinsics_uncertainty.has_value());
     QVERIFY(!weighed.cameras[1].prior.rotation && !weighed.cameras[1].prior.translation);
-    const CheckRun checked = checkCalibration(checkInputOf(before, first.session), first.pass, {});
+    const CheckRun checked = checkCalibration(checkInputOf(before, first.session), first.detections, {});
     QVERIFY2(checked.check.verdict != Verdict::Changed, checked.check.reason.c_str());
   }
 
@@ -227,7 +227,7 @@ class TestCheckCalibration : public QObject {
     const RunContext context{silentProgress(), source.get_token()};
     const CheckInput input = checkInputOf(before_, session_);
     try {
-      checkCalibration(input, now.pass, context);
+      checkCalibration(input, now.detections, context);
     } catch (const Cancelled&) {
       return;
     }

@@ -66,9 +66,9 @@ class TestBlinkingBoard : public QObject {
                                  found.principal_point_px.y() - truth.principal_point_px.y());
     qInfo(
         "%d views of %zu pictures, f %.2f +- %.2f (%.2f), %.3f px RMS, projection off by %.3f px, said %.3f",
-        run.result.views_used, run.pass.cameras.front().windows.size(), found.focal_length_px.x(), sigma[0],
-        truth.focal_length_px.x(), run.result.reprojection_rms_px, projectionDifference(truth, found).rms_px,
-        run.result.image.rms_px);
+        run.result.views_used, run.detections.cameras.front().windows.size(), found.focal_length_px.x(),
+        sigma[0], truth.focal_length_px.x(), run.result.reprojection_rms_px,
+        projectionDifference(truth, found).rms_px, run.result.image.rms_px);
     constexpr double kSigmas = 4.0;
     for (int k = 0; k < 4; ++k)
       QVERIFY2(std::abs(errors[k]) < kSigmas * sigma[k],
@@ -144,8 +144,8 @@ class TestBlinkingBoard : public QObject {
       Session one = all;
       one.recording = recording;
       one.more_recordings.clear();
-      const DetectionResult pass = readAndDetect(one, {CameraLens{}}, RunContext{});
-      found += !pass.cameras.front().views.empty();
+      const DetectionResult detections = readAndDetect(one, {CameraLens{}}, RunContext{});
+      found += !detections.cameras.front().views.empty();
     }
     QVERIFY2(found >= 8, QByteArray::number(found));
     const IntrinsicsRun run = calibrateIntrinsics(all, 0, RunContext{});

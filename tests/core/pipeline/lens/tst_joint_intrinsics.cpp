@@ -63,10 +63,10 @@ class TestJointIntrinsics : public QObject {
     found_.focal_length_px += Eigen::Vector2d(0.4, -0.3);
     found_.principal_point_px += Eigen::Vector2d(-0.5, 0.6);
     found_.distortion[0] += 4e-3;
-    seeThrough(truth_, found_, simulated_.pass.cameras[0]);
+    seeThrough(truth_, found_, simulated_.detections.cameras[0]);
     simulated_.session.cameras[0].intrinsics.reset();
-    simulated_.pass.lenses = {{std::nullopt, found_}};
-    run_ = calibrate(simulated_.session, simulated_.pass, {}, {foundFirst()});
+    simulated_.detections.lenses = {{std::nullopt, found_}};
+    run_ = calibrate(simulated_.session, simulated_.detections, {}, {foundFirst()});
   }
 
   void run_solvesForThem_andKeepsWhatWasFoundFirst() {
@@ -148,7 +148,7 @@ class TestJointIntrinsics : public QObject {
     Session session = simulated_.session;
     session.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Fixed;
     session.options.report.edit().split_half_check = false;
-    const CalibrationRun run = calibrate(session, simulated_.pass, {}, {foundFirst()});
+    const CalibrationRun run = calibrate(session, simulated_.detections, {}, {foundFirst()});
     QVERIFY(!run.result.state.cameras[0].lens.solved);
     QVERIFY(run.result.reason.find(kDoubt) != std::string::npos);
     QVERIFY(run.result.state.cameras[0].lens.found() == found_);
@@ -162,9 +162,9 @@ class TestJointIntrinsics : public QObject {
     session.options.optimisation.edit().camera_intrinsics = CameraIntrinsicsChoice::Fixed;
     session.options.report.edit().split_half_check = false;
     session.cameras[0].intrinsics = found_;
-    DetectionResult pass = simulated_.pass;
-    pass.lenses = givenLenses(session);
-    const CalibrationRun run = calibrate(session, pass, {});
+    DetectionResult detections = simulated_.detections;
+    detections.lenses = givenLenses(session);
+    const CalibrationRun run = calibrate(session, detections, {});
     QVERIFY(run.result.state.cameras[0].lens.given == found_);
     QVERIFY(!run.result.state.cameras[0].lens.solved && !run.result.state.cameras[0].lens.found());
     QVERIFY(!run.result.uncertainty.cameras[0].intrinsics_std);

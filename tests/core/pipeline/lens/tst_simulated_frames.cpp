@@ -79,13 +79,13 @@ class TestSimulatedFrames : public QObject {
     const QTemporaryDir folder;
     const SimulationSummary made = simulate(scenario, folder.path().toStdString(), RunContext{});
     const Session session = readSession(made.session);
-    const DetectionResult pass = readAndDetect(session, givenLenses(session), RunContext{});
+    const DetectionResult detections = readAndDetect(session, givenLenses(session), RunContext{});
     const auto named = [&](const RecordingFault& fault) {
       return fault.text.find(turns == 2 ? "rotated by 180 deg within" : "rotated by 90 deg ") !=
              std::string::npos;
     };
-    QCOMPARE(std::any_of(pass.faults.begin(), pass.faults.end(), named), turns > 0);
-    const BoardObservations& seen = pass.cameras.front();
+    QCOMPARE(std::any_of(detections.faults.begin(), detections.faults.end(), named), turns > 0);
+    const BoardObservations& seen = detections.cameras.front();
     QVERIFY2(seen.views.size() >= 18, QByteArray::number(static_cast<double>(seen.views.size())));
     const SinusoidMotion motion(scenario);
     double squares_px2 = 0.0;
@@ -127,8 +127,8 @@ class TestSimulatedFrames : public QObject {
     // With 8 s a translation may be less certain than required, which must be the only reason.
     QVERIFY2(run.result.status == CalibrationStatus::Ok || run.result.reason.find("translation along") == 0,
              run.result.reason.c_str());
-    const double seen = static_cast<double>(run.pass.cameras[0].views.size()) /
-                        static_cast<double>(run.pass.cameras[0].windows.size());
+    const double seen = static_cast<double>(run.detections.cameras[0].views.size()) /
+                        static_cast<double>(run.detections.cameras[0].windows.size());
     QVERIFY2(seen > 0.95, QByteArray::number(seen));
   }
 
@@ -186,9 +186,10 @@ class TestSimulatedFrames : public QObject {
       ++spoilt;
     }
     const CalibrationRun run = calibrate(session(), RunContext{});
-    QVERIFY(std::any_of(run.pass.faults.begin(), run.pass.faults.end(), [](const RecordingFault& fault) {
-      return fault.text.find("3 of 80 frames cannot be read") != std::string::npos;
-    }));
+    QVERIFY(std::any_of(run.detections.faults.begin(), run.detections.faults.end(),
+                        [](const RecordingFault& fault) {
+                          return fault.text.find("3 of 80 frames cannot be read") != std::string::npos;
+                        }));
   }
 
  private:

@@ -38,7 +38,7 @@ Scenario briskForRepeatCalibration(std::uint64_t seed, const std::string& name =
 // Changes of the recordings before their calibration.
 struct Spoil {
   std::function<void(std::size_t, Scenario&)> rig = {};
-  std::function<void(std::size_t, DetectionResult&)> pass = {};
+  std::function<void(std::size_t, DetectionResult&)> detections = {};
 };
 
 RepeatRun repeatOf(std::size_t count, const Spoil& spoil = {}, const std::string& name = "davis346",
@@ -50,11 +50,11 @@ RepeatRun repeatOf(std::size_t count, const Spoil& spoil = {}, const std::string
     Session session = simulatePass(2.0, scenario).session;  // the user's session of the rig
     if (spoil.rig) spoil.rig(k, scenario);
     SimulatedPass simulated = simulatePass(kRepeatCalibrationDuration_s, scenario);
-    if (spoil.pass) spoil.pass(k, simulated.pass);
+    if (spoil.detections) spoil.detections(k, simulated.detections);
     session.recording = "recording" + std::to_string(k + 1) + ".bag";
     session.source = "session" + std::to_string(k + 1) + ".yaml";
     sessions.push_back(std::move(session));
-    passes.push_back(std::move(simulated.pass));
+    passes.push_back(std::move(simulated.detections));
   }
   const RepeatInput input = evical::repeatOf(std::move(sessions));
   return repeatCalibration(
@@ -127,7 +127,7 @@ class TestRepeatCalibration : public QObject {
   void priorOfLineDelays_needsNoResolutionInTheSession() {
     const SimulatedPass simulated = simulatePass(2.0, "rolling_shutter");
     CalibrationState state;
-    for (const CameraLens& lens : simulated.pass.lenses) state.cameras.emplace_back().lens = lens;
+    for (const CameraLens& lens : simulated.detections.lenses) state.cameras.emplace_back().lens = lens;
     state.imus.resize(simulated.session.imus.size());
     Session without = simulated.session;
     for (SessionCamera& camera : without.cameras) camera.resolution_px = {};
@@ -159,7 +159,8 @@ class TestRepeatCalibration : public QObject {
     const RepeatInput input = evical::repeatOf(std::move(sessions));
     const auto calibrate = [&](std::size_t k, const Session& session, const RunContext& one) {
       CalibrationOutcome outcome = runCalibration(
-          session, simulatePass(kRepeatCalibrationDuration_s, briskForRepeatCalibration(k + 1)).pass, one);
+          session, simulatePass(kRepeatCalibrationDuration_s, briskForRepeatCalibration(k + 1)).detections,
+          one);
       if (k == 1 && outcome.run) {
         CameraLens& lens = outcome.run->result.state.cameras[0].lens;
         lens.solved = lens.inUse();
@@ -258,8 +259,8 @@ class TestRepeatCalibration : public QObject {
   }
 
   void failedRecording_isListedAndTheOthersGoOn() {
-    const RepeatRun run = repeatOf(3, {{}, [](std::size_t k, DetectionResult& pass) {
-                                         if (k == 0) pass.cameras.front().views.clear();
+    const RepeatRun run = repeatOf(3, {{}, [](std::size_t k, DetectionResult& detections) {
+                                         if (k == 0) detections.cameras.front().views.clear();
                                        }});
     const Repeatability& repeat = run.repeatability;
     QVERIFY2(repeat.verdict == Verdict::Unchanged, repeat.reason.c_str());
@@ -269,8 +270,8 @@ class TestRepeatCalibration : public QObject {
   }
 
   void fewerThanTwo_isNoRepeat() {
-    const RepeatRun run = repeatOf(2, {{}, [](std::size_t k, DetectionResult& pass) {
-                                         if (k == 0) pass.cameras.front().views.clear();
+    const RepeatRun run = repeatOf(2, {{}, [](std::size_t k, DetectionResult& detections) {
+                                         if (k == 0) detections.cameras.front().views.clear();
                                        }});
     QVERIFY(run.repeatability.verdict == Verdict::CannotTell && !run.joint);
     QVERIFY2(run.repeatability.reason.find("1 of 2") != std::string::npos, run.repeatability.reason.c_str());

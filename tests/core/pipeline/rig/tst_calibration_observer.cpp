@@ -54,8 +54,9 @@ class TestCalibrationObserver : public QObject {
     const CalibrationRun run = calibrate(session, {silentProgress(), {}, &notebook});
 
     QVERIFY(notebook.window_calls > 5);
-    QVERIFY(notebook.windows + 3 >= run.pass.cameras[0].windows.size());  // the last ones arrive at the end
-    QCOMPARE(notebook.input.imus.at(0).samples.size(), run.pass.imus.at(0).samples.size());
+    QVERIFY(notebook.windows + 3 >=
+            run.detections.cameras[0].windows.size());  // the last ones arrive at the end
+    QCOMPARE(notebook.input.imus.at(0).samples.size(), run.detections.imus.at(0).samples.size());
     QVERIFY(notebook.duration_of_steps_s > 0.0);
     QVERIFY(notebook.duration_of_steps_s < 1.05 * run.result.timing.initialise_s + 0.01);
     QCOMPARE(notebook.steps,

@@ -122,9 +122,9 @@ class TestCancelling : public QObject {
                                            : 10.0);
     Session session = test::sessionFor(scenario);
     session.options.optimisation.edit().threads = 1;
-    const DetectionResult pass = test::perfectPass(scenario, 0.05, 0.02);
+    const DetectionResult detections = test::perfectPass(scenario, 0.05, 0.02);
     const QStringList stages =
-        stopEverywhere([&](const RunContext& context) { calibrate(session, pass, context); });
+        stopEverywhere([&](const RunContext& context) { calibrate(session, detections, context); });
     QVERIFY(!stages.contains("LATE"));
     QVERIFY(stages.contains("optimise"));
     QVERIFY(stages.size() >= 8);
@@ -135,8 +135,8 @@ class TestCancelling : public QObject {
     Scenario scenario = readScenario(test::scenarioPath("one_axis_rotation"));
     scenario.duration_s = 10.0;
     const Session session = test::sessionFor(scenario);
-    const DetectionResult pass = test::perfectPass(scenario, 0.05, 0.02);
-    const Work whole = [&](const RunContext& context) { calibrate(session, pass, context); };
+    const DetectionResult detections = test::perfectPass(scenario, 0.05, 0.02);
+    const Work whole = [&](const RunContext& context) { calibrate(session, detections, context); };
     int in_initialisation = 0;
     for (const double after_s : {0.02, 0.05, 0.1, 0.2, 0.3}) {
       const Stop stop = stopAfter(whole, after_s);

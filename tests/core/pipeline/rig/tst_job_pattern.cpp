@@ -185,7 +185,7 @@ void fail(Session session) {
       session, [](const auto&) { return false; }, box);
   check(ending.outcome.status == RunStatus::Failed && ending.outcome.error && !ending.outcome.run,
         "a failure during the run is reported as a failure");
-  check(!ending.outcome.pass.cameras.at(0).views.empty(), "with what was detected before it");
+  check(!ending.outcome.detections.cameras.at(0).views.empty(), "with what was detected before it");
 }
 
 }  // namespace

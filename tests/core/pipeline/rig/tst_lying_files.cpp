@@ -25,7 +25,7 @@ class TestLyingFiles : public QObject {
   void withoutALie_thereIsAResult() {
     const CalibrationRun run = calibrate(lying_.tell({}), RunContext{});
     QVERIFY(run.result.status != CalibrationStatus::Failed);
-    QVERIFY(run.pass.cameras.front().views.size() > 50);
+    QVERIFY(run.detections.cameras.front().views.size() > 50);
   }
   void lies_endInAResultOrInWords() {
     constexpr unsigned kRecordings = 30;

@@ -21,18 +21,18 @@ class Liar {
  public:
   explicit Liar(unsigned seed) : random_(seed) {}
 
-  QStringList spoil(DetectionResult& pass) {
+  QStringList spoil(DetectionResult& detections) {
     QStringList told;
     const int lies = 1 + whole(3);
     for (int k = 0; k < lies; ++k) {
-      std::vector<ImuSample>& samples = pass.imus[0].samples;
-      std::vector<BoardView>& views = pass.cameras[0].views;
+      std::vector<ImuSample>& samples = detections.imus[0].samples;
+      std::vector<BoardView>& views = detections.cameras[0].views;
       if (samples.empty() || views.empty()) break;
       told << tell(samples, views);
     }
     const auto earlier = [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; };
-    std::stable_sort(pass.imus[0].samples.begin(), pass.imus[0].samples.end(), earlier);
-    std::stable_sort(pass.cameras[0].views.begin(), pass.cameras[0].views.end(),
+    std::stable_sort(detections.imus[0].samples.begin(), detections.imus[0].samples.end(), earlier);
+    std::stable_sort(detections.cameras[0].views.begin(), detections.cameras[0].views.end(),
                      [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
     return told;
   }
@@ -113,12 +113,12 @@ void TestLyingRecordings::everything_endsInAResultOrInWords() {
   const DetectionResult good = test::perfectPass(scenario, 0.05, 0.03);
   int results = 0;
   for (unsigned seed = 1; seed <= kRecordings; ++seed) {
-    DetectionResult pass = good;
-    const QString told = Liar(seed).spoil(pass).join(", ");
+    DetectionResult detections = good;
+    const QString told = Liar(seed).spoil(detections).join(", ");
     QElapsedTimer timer;
     timer.start();
     try {
-      const CalibrationRun run = calibrate(session, std::move(pass), RunContext{});
+      const CalibrationRun run = calibrate(session, std::move(detections), RunContext{});
       const CameraState& camera = run.result.state.cameras.front();
       QVERIFY2(camera.reference_from_camera.translation_m.allFinite() && std::isfinite(camera.time_offset_s),
                qPrintable(told));

@@ -29,7 +29,7 @@ void negate(ImuData& imu) {
   for (ImuSample& sample : imu.samples) sample.specific_force_m_s2 *= -1.0;
 }
 void mirror(Mirroring how, std::size_t camera, SimulatedPass& rig) {
-  test::mirrorImage(how, camera, false, rig.session, rig.pass);
+  test::mirrorImage(how, camera, false, rig.session, rig.detections);
 }
 // The session reverses a camera's image that is not mirrored.
 void stateWrongly(Mirroring how, std::size_t camera, SimulatedPass& rig) {
@@ -59,7 +59,7 @@ Outcome outcomeOf(const SimulatedPass& rig) {
     return repair ? QString::fromStdString(repair->text()) : QString();
   };
   try {
-    const CalibrationRun run = calibrate(rig.session, rig.pass, RunContext{});
+    const CalibrationRun run = calibrate(rig.session, rig.detections, RunContext{});
     if (run.result.status != CalibrationStatus::Ok)
       outcome.reason = QString::fromStdString(run.result.reason);
     outcome.repair = textOf(run.result.repair);
@@ -102,7 +102,7 @@ class TestMirroredImages : public QObject {
       QCOMPARE(outcome.repair, QString());
     }
     SimulatedPass negated = single_;
-    negate(negated.pass.imus.front());
+    negate(negated.detections.imus.front());
     const Outcome outcome = outcomeOf(negated);
     VERIFY_NAMES(outcome.failure, "negated", "the image of left is mirrored", "readable");
     QCOMPARE(outcome.repair, QString());
@@ -155,7 +155,7 @@ class TestMirroredImages : public QObject {
     for (const std::optional<double> sigma_deg : {std::optional(5.0), std::optional<double>()}) {
       SimulatedPass negated = single_;
       stateMount(negated, sigma_deg);
-      negate(negated.pass.imus.front());
+      negate(negated.detections.imus.front());
       const Outcome outcome = outcomeOf(negated);
       VERIFY_NAMES(outcome.failure, "left_imu: the accelerations are negated", "not mirrored");
       QCOMPARE(outcome.repair, QString("imus.left_imu.accelerometer_axes=-x,-y,-z"));
@@ -169,7 +169,7 @@ class TestMirroredImages : public QObject {
   void statedMirroring_leavesAccelerations() {
     SimulatedPass negated = single_;
     negated.session.cameras.front().mirrored = Mirroring::None;
-    negate(negated.pass.imus.front());
+    negate(negated.detections.imus.front());
     QCOMPARE(outcomeOf(negated).repair, QString("imus.left_imu.accelerometer_axes=-x,-y,-z"));
   }
 
@@ -197,7 +197,7 @@ class TestMirroredImages : public QObject {
   void wrongReversalWithNegation_isDoubtful_unlessConfirmed() {
     SimulatedPass wrong = single_;
     stateWrongly(Mirroring::Y, 0, wrong);
-    negate(wrong.pass.imus.front());
+    negate(wrong.detections.imus.front());
     declareNegated(wrong.session.imus.front());
     const Outcome misled = outcomeOf(wrong);
     QVERIFY(errorOf_deg(wrong, misled) > 179.0);
@@ -221,7 +221,7 @@ class TestMirroredImages : public QObject {
   void wrongReversalOfOneOfTwo_isNamed() {
     SimulatedPass stereo = rig("stereo_two_imus");
     stereo.session.imus.resize(1);
-    stereo.pass.imus.resize(1);
+    stereo.detections.imus.resize(1);
     for (const std::size_t camera : {0U, 1U}) {
       SimulatedPass wrong = stereo;
       stateWrongly(Mirroring::X, camera, wrong);
@@ -230,7 +230,7 @@ class TestMirroredImages : public QObject {
       QVERIFY2(outcome.failure.startsWith(name + ": mirrored: x is wrong"), qPrintable(outcome.failure));
       QCOMPARE(outcome.repair, QString("cameras.%1.mirrored=none").arg(name));
       wrong.session.imus.clear();
-      wrong.pass.imus.clear();
+      wrong.detections.imus.clear();
       wrong.session.reference = stereo.session.cameras.front().name;
       const Outcome alone = outcomeOf(wrong);
       QVERIFY2(alone.failure.startsWith(name + ": either mirrored: x is wrong for " + name),
@@ -244,7 +244,7 @@ class TestMirroredImages : public QObject {
   void negationInTheSession_isDoubtful_unlessConfirmed() {
     SimulatedPass wrong = single_;
     mirror(Mirroring::X, 0, wrong);
-    negate(wrong.pass.imus.front());
+    negate(wrong.detections.imus.front());
     declareNegated(wrong.session.imus.front());
     const Outcome misled = outcomeOf(wrong);
     QVERIFY(errorOf_deg(wrong, misled) > 179.0);
@@ -273,7 +273,7 @@ class TestMirroredImages : public QObject {
   void oneOfTwoCameras_isNamed() {
     SimulatedPass stereo = rig("stereo_two_imus");
     stereo.session.imus.resize(1);
-    stereo.pass.imus.resize(1);
+    stereo.detections.imus.resize(1);
     for (const std::size_t camera : {0U, 1U}) {
       SimulatedPass mirrored = stereo;
       mirror(Mirroring::X, camera, mirrored);
@@ -283,7 +283,7 @@ class TestMirroredImages : public QObject {
                qPrintable(outcome.failure));
       QCOMPARE(outcome.repair, QString());  // whether in x or in y is not known
       mirrored.session.imus.clear();
-      mirrored.pass.imus.clear();
+      mirrored.detections.imus.clear();
       mirrored.session.reference = stereo.session.cameras.front().name;
       VERIFY_NAMES(outcomeOf(mirrored).failure, "mirrored", "from behind", "left", "right");
       mirrored.session.cameras[1 - camera].mirrored = Mirroring::None;
@@ -306,7 +306,7 @@ class TestMirroredImages : public QObject {
     QVERIFY2(!confirmed.reason.contains("inverts"), qPrintable(confirmed.reason));
     QVERIFY2(confirmed.failure.isEmpty(), qPrintable(confirmed.failure));
     hybrid.session.imus.front().accelerometer_axes = kIdentityAxes;
-    negate(hybrid.pass.imus.front());
+    negate(hybrid.detections.imus.front());
     QVERIFY(outcomeOf(hybrid).repair.endsWith("accelerometer_axes=-x,-y,-z"));
   }
 
@@ -317,8 +317,8 @@ class TestMirroredImages : public QObject {
       mirror(how, 0, mirrored);
       const CameraIntrinsics delivered = *mirrored.session.cameras.front().intrinsics;
       const IntrinsicsResult found =
-          estimateIntrinsics({mirrored.session.board, delivered.resolution_px, mirrored.pass.cameras.front(),
-                              delivered, std::nullopt},
+          estimateIntrinsics({mirrored.session.board, delivered.resolution_px,
+                              mirrored.detections.cameras.front(), delivered, std::nullopt},
                              *mirrored.session.options.intrinsics, RunContext{});
       QVERIFY2(projectionDifference(found.intrinsics, delivered).rms_px < 0.5, nameOf(how));
     }
@@ -328,7 +328,7 @@ class TestMirroredImages : public QObject {
     const SimulatedPass davis = rig("davis346_frames");
     for (const Mirroring how : {Mirroring::X, Mirroring::Y}) {
       SimulatedPass mirrored = davis;
-      test::mirrorImage(how, 0, true, mirrored.session, mirrored.pass);
+      test::mirrorImage(how, 0, true, mirrored.session, mirrored.detections);
       const Outcome outcome = outcomeOf(mirrored);
       VERIFY_NAMES(outcome.failure, "left: the image is mirrored");
       QCOMPARE(outcome.repair, QString("cameras.left.mirrored=%1").arg(nameOf(how)));
@@ -350,10 +350,10 @@ class TestMirroredImages : public QObject {
     QVERIFY2(outcomeOf(mirrored).failure.startsWith("events: the image is mirrored"),
              qPrintable(outcomeOf(mirrored).failure));
     mirrored.session.imus.clear();
-    mirrored.pass.imus.clear();
+    mirrored.detections.imus.clear();
     mirrored.session.reference = "events";
     VERIFY_NAMES(outcomeOf(mirrored).failure, "mirrored");
-    negate(boards.pass.imus.front());
+    negate(boards.detections.imus.front());
     const Outcome negated = outcomeOf(boards);
     VERIFY_NAMES(negated.failure, "accelerations are negated", "tags are readable");
     QVERIFY(negated.repair.endsWith("accelerometer_axes=-x,-y,-z"));
@@ -362,7 +362,7 @@ class TestMirroredImages : public QObject {
   // One inverted axis of the accelerometer: no reading of the gyroscope repairs it.
   void leftHandedAccelerometer_hasNoRepair() {
     SimulatedPass rig = single_;
-    for (ImuSample& sample : rig.pass.imus.front().samples) sample.specific_force_m_s2.z() *= -1.0;
+    for (ImuSample& sample : rig.detections.imus.front().samples) sample.specific_force_m_s2.z() *= -1.0;
     const Outcome outcome = outcomeOf(rig);
     VERIFY_NAMES(outcome.failure, "accelerometer's axes seem left-handed", "(x,y,-z)", "readable");
     QCOMPARE(outcome.repair, QString());
@@ -372,7 +372,7 @@ class TestMirroredImages : public QObject {
     const SimulatedPass two = rig("stereo_two_imus");
     for (const std::size_t imu : {0U, 1U}) {
       SimulatedPass negated = two;
-      negate(negated.pass.imus[imu]);
+      negate(negated.detections.imus[imu]);
       const Outcome outcome = outcomeOf(negated);
       VERIFY_NAMES(outcome.failure, "accelerations are negated");
       QCOMPARE(outcome.repair,

@@ -25,7 +25,7 @@ class TestCauses : public QObject {
     base_.scenario = readScenario(test::scenarioPath("davis346_10s"));
     base_.session = test::sessionFor(base_.scenario);
     base_.session.options.report.edit().split_half_check = false;  // half of the time, and not tested here
-    base_.pass = test::perfectPass(base_.scenario, 0.05, 0.02);
+    base_.detections = test::perfectPass(base_.scenario, 0.05, 0.02);
   }
 
   void firstReason_namesTheCause_data() {
@@ -73,7 +73,7 @@ class TestCauses : public QObject {
     perturbation.apply(recorded, size);
     std::string reason;
     try {
-      const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+      const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
       QVERIFY(!fails);
       QCOMPARE(run.result.status, CalibrationStatus::Doubtful);
       reason = run.result.reason;
@@ -138,7 +138,7 @@ class TestCauses : public QObject {
     test::perturbation(name.toStdString()).apply(recorded, size);
     QString reason;
     try {
-      const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+      const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
       QCOMPARE(run.result.status, CalibrationStatus::Doubtful);
       reason = QString::fromStdString(run.result.reason);
     } catch (const CalibrationError& error) {
@@ -171,7 +171,7 @@ class TestCauses : public QObject {
   void noiseTooLarge_isNamedInAnyVerdict() {
     test::Recorded recorded = base_;
     test::perturbation("stated noise").apply(recorded, 30.0);
-    const CalibrationResult result = calibrate(recorded.session, recorded.pass, RunContext{}).result;
+    const CalibrationResult result = calibrate(recorded.session, recorded.detections, RunContext{}).result;
     QVERIFY(!result.notes.empty());
     const QString text =
         QString::fromStdString(result.status == CalibrationStatus::Ok ? result.notes.front() : result.reason);
@@ -184,13 +184,13 @@ class TestCauses : public QObject {
   void leftHandedAxes_areNamedWhereOneAxisOutweighs() {
     test::Recorded other = base_;
     other.scenario.seed = 3;
-    other.pass = test::perfectPass(other.scenario, 0.05, 0.02);
+    other.detections = test::perfectPass(other.scenario, 0.05, 0.02);
     for (const char* name : {"both mirrored", "gyroscope swapped", "rates negated"}) {
       test::Recorded recorded = other;
       const test::Perturbation& perturbation = test::perturbation(name);
       perturbation.apply(recorded, 1.0);
       try {
-        calibrate(recorded.session, recorded.pass, RunContext{});
+        calibrate(recorded.session, recorded.detections, RunContext{});
         QFAIL(name);
       } catch (const CalibrationError& error) {
         QVERIFY2(perturbation.isNamedIn(test::firstReason(error.what())), error.what());
@@ -201,9 +201,9 @@ class TestCauses : public QObject {
   // Weak data have a reason then.
   void log_thatEndsEarly_isTold() {
     test::Recorded recorded = base_;
-    std::vector<ImuSample>& samples = recorded.pass.imus.front().samples;
+    std::vector<ImuSample>& samples = recorded.detections.imus.front().samples;
     samples.resize(samples.size() / 2);
-    const CalibrationResult result = calibrate(recorded.session, recorded.pass, RunContext{}).result;
+    const CalibrationResult result = calibrate(recorded.session, recorded.detections, RunContext{}).result;
     const auto told = std::ranges::count_if(result.notes, [](const std::string& note) {
       return note.find("left_imu: its samples cover 5.0 s, those of left ") == 0;
     });
@@ -214,9 +214,9 @@ class TestCauses : public QObject {
   void lateAccelerometer_isNoWrongBoard() {
     test::Recorded recorded = base_;
     recorded.scenario.seed = 5;
-    recorded.pass = test::perfectPass(recorded.scenario, 0.05, 0.02);
+    recorded.detections = test::perfectPass(recorded.scenario, 0.05, 0.02);
     test::perturbation("accelerometer late").apply(recorded, 5.0);
-    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
     QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
     expectRight(recorded, run);
   }
@@ -247,7 +247,7 @@ class TestCauses : public QObject {
     QFETCH(double, size);
     test::Recorded recorded = base_;
     test::perturbation(name.toStdString()).apply(recorded, size);
-    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
     QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
     expectRight(recorded, run);
   }
@@ -279,7 +279,8 @@ class TestCauses : public QObject {
     QTEST(QString::fromStdString(repair->text()), "repair");
     setInSession(recorded.session, repair->key, repair->value);
     const SessionImu& imu = recorded.session.imus[0];
-    for (ImuSample& sample : recorded.pass.imus[0].samples) {  // which were converted by the session before
+    for (ImuSample& sample :
+         recorded.detections.imus[0].samples) {  // which were converted by the session before
       sample.angular_rate_rad_s =
           readAs(imu.gyroscope_axes, sample.angular_rate_rad_s) *
           radiansPerSecond(imu.angular_rate_unit.value_or(AngularRateUnit::RadiansPerSecond));
@@ -287,7 +288,7 @@ class TestCauses : public QObject {
           readAs(imu.accelerometer_axes, sample.specific_force_m_s2) *
           metresPerSecond2(imu.acceleration_unit.value_or(AccelerationUnit::MetresPerSecond2));
     }
-    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
     QVERIFY(!run.result.repair);
     expectRight(recorded, run);
   }
@@ -296,7 +297,7 @@ class TestCauses : public QObject {
   void timeOffsetBeyondTheSearch_isFound() {
     test::Recorded recorded = base_;
     test::perturbation("time offset").apply(recorded, 5.0);
-    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
     QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
     expectRight(recorded, run);
   }
@@ -313,14 +314,14 @@ class TestCauses : public QObject {
     QVERIFY2(range_s[0] < 0.5 && range_s[1] > kMoved_s - 1.5 && range_s[1] < kMoved_s,
              repair->text().c_str());
     test::cutTo(range_s, recorded);
-    expectRight(recorded, calibrate(recorded.session, recorded.pass, RunContext{}));
+    expectRight(recorded, calibrate(recorded.session, recorded.detections, RunContext{}));
   }
 
   // A hundred times as fast as assumed: the sigmas account for the rest.
   void walkingBiases_areRepaired() {
     test::Recorded recorded = base_;
     test::perturbation("walking biases").apply(recorded, 1e-3);
-    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
     QVERIFY(!run.result.repair);
     QCOMPARE(freedBy(run), QStringList{"optimisation.model.bias_model=linear"});
     const double sigmas = comparisonOf(recorded, run).normalisedRms();
@@ -336,20 +337,20 @@ class TestCauses : public QObject {
     QFETCH(double, size_deg);
     test::Recorded recorded = base_;
     test::perturbation("gyroscope turned").apply(recorded, size_deg);
-    const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+    const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
     QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
     QCOMPARE(freedBy(run), QStringList{"optimisation.model.gyroscope_rotation=true"});
     expectRight(recorded, run);
   }
   void nothingSpoilt_freesNothing() {
-    QVERIFY(calibrate(base_.session, base_.pass, RunContext{}).result.freed.empty());
+    QVERIFY(calibrate(base_.session, base_.detections, RunContext{}).result.freed.empty());
   }
 
   // If a clock steps, the larger part is used, and the result is correct.
   void clockThatSteps_isRightInTheLargerPart() {
     test::Recorded recorded = base_;
     test::perturbation("clock step").apply(recorded, 50.0);
-    expectRight(recorded, calibrate(recorded.session, recorded.pass, RunContext{}));
+    expectRight(recorded, calibrate(recorded.session, recorded.detections, RunContext{}));
   }
 
   // A bow of a board that is assumed flat is found by the score test and, for the larger bow, by a trial.
@@ -359,14 +360,14 @@ class TestCauses : public QObject {
       const test::Perturbation& bow = test::perturbation("board bow");
       bow.apply(recorded, height_mm);
       recorded.session.options.optimisation.edit().board_bow = false;
-      const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+      const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
       QCOMPARE(run.result.status, CalibrationStatus::Doubtful);
       QVERIFY2(bow.isNamedIn(test::firstReason(run.result.reason)), run.result.reason.c_str());
     }
   }
 
   void nothingSpoilt_isOk() {
-    const CalibrationRun run = calibrate(base_.session, base_.pass, RunContext{});
+    const CalibrationRun run = calibrate(base_.session, base_.detections, RunContext{});
     QVERIFY2(run.result.status == CalibrationStatus::Ok, run.result.reason.c_str());
     expectRight(base_, run);
   }
@@ -386,7 +387,7 @@ class TestCauses : public QObject {
   }
   static std::optional<Repair> repairOf(const test::Recorded& recorded) {
     try {
-      return calibrate(recorded.session, recorded.pass, RunContext{}).result.repair;
+      return calibrate(recorded.session, recorded.detections, RunContext{}).result.repair;
     } catch (const CalibrationError& error) {
       return error.repair();
     }

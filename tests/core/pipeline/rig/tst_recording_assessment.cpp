@@ -59,14 +59,14 @@ QString adviceOf(const RecordingAssessment& assessment, AssessedThing thing) {
 RecordingAssessment assess(const QString& name, double duration_s) {
   SimulatedPass simulated = simulatePass(duration_s, scenario(name, duration_s));
   // It lists each window twice, in two consecutive lists.
-  for (BoardObservations& camera : simulated.pass.cameras) {
+  for (BoardObservations& camera : simulated.detections.cameras) {
     const auto later = [](const WindowReport& one, const WindowReport& next) {
       return next.time_s < one.time_s;
     };
     const auto end = std::adjacent_find(camera.windows.begin(), camera.windows.end(), later);
     if (end != camera.windows.end()) camera.windows.erase(std::next(end), camera.windows.end());
   }
-  return assessRecording(simulated.session, {simulated.pass, {}}, {});
+  return assessRecording(simulated.session, {simulated.detections, {}}, {});
 }
 
 }  // namespace
@@ -96,9 +96,9 @@ class TestRecordingAssessment : public QObject {
     const Scenario truth = scenario(name, duration_s);
     const SimulatedPass perfect = events ? SimulatedPass{} : simulatePass(duration_s, truth);
     const Session session = sessionFor(truth);
-    const DetectionResult pass = events ? detectedPass(truth, session) : perfect.pass;
-    const RecordingAssessment assessment = assessRecording(session, {pass, {}}, {});
-    const CalibrationRun run = calibrate(session, pass, {});
+    const DetectionResult detections = events ? detectedPass(truth, session) : perfect.detections;
+    const RecordingAssessment assessment = assessRecording(session, {detections, {}}, {});
+    const CalibrationRun run = calibrate(session, detections, {});
     QCOMPARE(assessment.sigmas.size(), truth.cameras.size());
     const auto agree = [&](double expected, double found, const char* what) {
       QVERIFY2(expected < 1.5 * found && found < 1.5 * expected,
@@ -151,13 +151,13 @@ class TestRecordingAssessment : public QObject {
 
   void recordingWithoutTheBoard_saysSoAndNothingElseIsInTheWay() {
     SimulatedPass simulated = simulatePass(10.0);
-    BoardObservations& seen = simulated.pass.cameras.front();
+    BoardObservations& seen = simulated.detections.cameras.front();
     seen.views.clear();
     for (WindowReport& window : seen.windows) {
       window.outcome = WindowOutcome::TooFewCircles;
       window.circles = 0;
     }
-    const RecordingAssessment assessment = assessRecording(simulated.session, {simulated.pass, {}}, {});
+    const RecordingAssessment assessment = assessRecording(simulated.session, {simulated.detections, {}}, {});
     QCOMPARE(lightOf(assessment, AssessedThing::Board), Light::Poor);
     QVERIFY(adviceOf(assessment, AssessedThing::Board).contains("board"));
     QVERIFY(!assessment.board_seen && !assessment.can_be_calibrated);
@@ -169,8 +169,8 @@ class TestRecordingAssessment : public QObject {
 
   void accelerationsInG_areAnObstacleThatIsNamed() {
     SimulatedPass simulated = simulatePass(6.0);
-    for (ImuSample& sample : simulated.pass.imus.front().samples) sample.specific_force_m_s2 /= 9.81;
-    const RecordingAssessment assessment = assessRecording(simulated.session, {simulated.pass, {}}, {});
+    for (ImuSample& sample : simulated.detections.imus.front().samples) sample.specific_force_m_s2 /= 9.81;
+    const RecordingAssessment assessment = assessRecording(simulated.session, {simulated.detections, {}}, {});
     const Assessed* const obstacle = find(assessment, AssessedThing::Obstacle);
     QVERIFY2(obstacle != nullptr && obstacle->measured.find("seems to be g") != std::string::npos,
              qPrintable(textOf(assessment)));
@@ -189,7 +189,7 @@ class TestRecordingAssessment : public QObject {
     noisier.imus.front().noise.gyroscope_density *= 2.0;
     QVERIFY(detectsTheSame(session, noisier));
     const DetectedRecording detected = forSession(*checked.detected, noisier);
-    const CalibrationRun from_check = calibrate(noisier, detected.pass, {}, detected.intrinsics);
+    const CalibrationRun from_check = calibrate(noisier, detected.detections, {}, detected.intrinsics);
     const CalibrationRun from_recording = calibrate(noisier, {});
     const auto at = [](const CalibrationRun& run) {
       return run.result.state.cameras.front().reference_from_camera.translation_m;
@@ -222,7 +222,7 @@ class TestRecordingAssessment : public QObject {
     const SimulatedPass simulated = simulatePass(10.0);
     std::stop_source stop;
     stop.request_stop();
-    QVERIFY_THROWS_EXCEPTION(Cancelled, assessRecording(simulated.session, {simulated.pass, {}},
+    QVERIFY_THROWS_EXCEPTION(Cancelled, assessRecording(simulated.session, {simulated.detections, {}},
                                                         {silentProgress(), stop.get_token()}));
   }
 };

@@ -1,5 +1,5 @@
 // Residuals of a result against the views of its pass, if the batch used only some views, or changed them.
-#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/detection/view_rejection.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/rig/tag_corners.h"
 #include "core/report/report_options.h"
@@ -20,7 +20,7 @@ void verifyOfPass(const CalibrationRun& run) {
   QVERIFY(!run.result.circle_residuals.empty());
   for (const CircleResidual& residual : run.result.circle_residuals) {
     const std::vector<BoardView>& views =
-        run.pass.cameras.at(static_cast<std::size_t>(residual.camera)).views;
+        run.detections.cameras.at(static_cast<std::size_t>(residual.camera)).views;
     const std::vector<CircleObservation>& circles = views.at(static_cast<std::size_t>(residual.view)).circles;
     const auto own = std::ranges::find(circles, residual.circle, &CircleObservation::circle);
     QVERIFY(own != circles.end());
@@ -44,21 +44,21 @@ class TestResidualViews : public QObject {
   void clockStep_leavesTheNumbersOfViews() {
     QFETCH(const double, at_s);
     SimulatedPass stepped = simulatePass(16.0);
-    for (BoardView& view : stepped.pass.cameras[0].views) {
+    for (BoardView& view : stepped.detections.cameras[0].views) {
       if (view.time_s < at_s) continue;
       view.time_s += 0.05;
       for (CircleObservation& circle : view.circles) circle.time_s += 0.05;
     }
-    for (WindowReport& window : stepped.pass.cameras[0].windows)
+    for (WindowReport& window : stepped.detections.cameras[0].windows)
       if (window.time_s >= at_s) window.time_s += 0.05;
     stepped.session.options.report.edit().split_half_check = false;
-    const CalibrationRun run = calibrate(stepped.session, stepped.pass, {});
+    const CalibrationRun run = calibrate(stepped.session, stepped.detections, {});
     QVERIFY2(run.result.reason.find("steps by") != std::string::npos, run.result.reason.c_str());
-    QCOMPARE(run.pass.cameras[0].views.size(), stepped.pass.cameras[0].views.size());
+    QCOMPARE(run.detections.cameras[0].views.size(), stepped.detections.cameras[0].views.size());
     verifyOfPass(run);
     // A user who rejects the window of a residual rejects this one.
     const CircleResidual& any = run.result.circle_residuals[run.result.circle_residuals.size() / 2];
-    const DetectionResult without = withoutViews(run.pass, 0, std::vector{any.view});
+    const DetectionResult without = withoutViews(run.detections, 0, std::vector{any.view});
     QVERIFY(without.rejected_views[0].size() == 1);
     QVERIFY(std::abs(without.rejected_views[0].front().time_s - any.time_s) < 0.03);
   }
@@ -75,9 +75,9 @@ class TestResidualViews : public QObject {
     board.radius_m = 0.0;
     scenario.cameras[0].frames.emplace();
     SimulatedPass tags = simulatePass(12.0, scenario);
-    moveTagCorners(-0.3, tags.pass.cameras[0].views);
+    moveTagCorners(-0.3, tags.detections.cameras[0].views);
     tags.session.options.report.edit().split_half_check = false;
-    const CalibrationRun run = calibrate(tags.session, tags.pass, {});
+    const CalibrationRun run = calibrate(tags.session, tags.detections, {});
     const auto told = [](const std::string& note) { return note.find("tag corners") != std::string::npos; };
     QVERIFY(std::ranges::any_of(run.result.notes, told));
     verifyOfPass(run);

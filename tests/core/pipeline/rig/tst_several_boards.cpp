@@ -1,6 +1,6 @@
 // Cameras that see different boards, from the session to the files of the result.
 #include "core/base/error.h"
-#include "core/pipeline/pass/saved_detections.h"
+#include "core/pipeline/detection/saved_detections.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/report/truth_comparison.h"
@@ -44,7 +44,7 @@ void keepViews(double begin_s, double end_s, BoardObservations& camera) {
 
 QString failureOfSeveralBoards(const SimulatedPass& simulated) {
   try {
-    return QString::fromStdString(calibrate(simulated.session, simulated.pass, {}).result.reason);
+    return QString::fromStdString(calibrate(simulated.session, simulated.detections, {}).result.reason);
   } catch (const CalibrationError& error) {
     return error.what();
   }
@@ -65,7 +65,7 @@ class TestSeveralBoards : public QObject {
 
   void rigAndBoards_areAsTheyAre() {
     const auto run =
-        std::make_shared<const CalibrationRun>(calibrate(simulated_.session, simulated_.pass, {}));
+        std::make_shared<const CalibrationRun>(calibrate(simulated_.session, simulated_.detections, {}));
     const std::filesystem::path out = path() / "out";
     writeResultFiles(out, simulated_.session, run, "0", "");
     const NamedResult result = readResultYaml(out / "result.yaml");
@@ -88,9 +88,9 @@ class TestSeveralBoards : public QObject {
   void withoutAnImu_too() {
     SimulatedPass alone = simulated_;
     alone.session.imus.clear();
-    alone.pass.imus.clear();
+    alone.detections.imus.clear();
     alone.session.reference = "events";
-    const CalibrationRun run = calibrate(alone.session, alone.pass, {});
+    const CalibrationRun run = calibrate(alone.session, alone.detections, {});
     Scenario truth = alone.truth;
     truth.imus.clear();
     const NamedResult named = namedResult(alone.session, std::make_shared<CalibrationResult>(run.result), "");
@@ -104,8 +104,8 @@ class TestSeveralBoards : public QObject {
 
   void boardsThatAreNeverSeenTogether_areToldOf() {
     SimulatedPass apart = simulated_;
-    keepViews(0.0, 0.45 * kSeveralBoardsDuration_s, apart.pass.cameras[0]);
-    keepViews(0.55 * kSeveralBoardsDuration_s, kSeveralBoardsDuration_s, apart.pass.cameras[1]);
+    keepViews(0.0, 0.45 * kSeveralBoardsDuration_s, apart.detections.cameras[0]);
+    keepViews(0.55 * kSeveralBoardsDuration_s, kSeveralBoardsDuration_s, apart.detections.cameras[1]);
     const QString said = failureOfSeveralBoards(apart);
     QVERIFY2(said.contains("tags: fewer than") && said.contains("their relative pose is unknown"),
              qPrintable(said));
@@ -116,10 +116,11 @@ class TestSeveralBoards : public QObject {
     SimulatedPass other = simulated_;
     other.truth.further_boards[0].world_from_board.translation_m.x() += 0.3;
     other = simulatePass(kSeveralBoardsDuration_s, other.truth);
-    keepViews(0.0, 0.5 * kSeveralBoardsDuration_s, moved.pass.cameras[1]);
-    keepViews(0.5 * kSeveralBoardsDuration_s, kSeveralBoardsDuration_s, other.pass.cameras[1]);
-    std::vector<BoardView>& views = moved.pass.cameras[1].views;
-    views.insert(views.end(), other.pass.cameras[1].views.begin(), other.pass.cameras[1].views.end());
+    keepViews(0.0, 0.5 * kSeveralBoardsDuration_s, moved.detections.cameras[1]);
+    keepViews(0.5 * kSeveralBoardsDuration_s, kSeveralBoardsDuration_s, other.detections.cameras[1]);
+    std::vector<BoardView>& views = moved.detections.cameras[1].views;
+    views.insert(views.end(), other.detections.cameras[1].views.begin(),
+                 other.detections.cameras[1].views.end());
     const QString said = failureOfSeveralBoards(moved);
     QVERIFY2(said.contains("of its views agree on its pose relative to"), qPrintable(said));
   }
@@ -127,7 +128,7 @@ class TestSeveralBoards : public QObject {
   void detectionsOfAnotherBoard_areRefused() {
     const std::filesystem::path saved = path() / "saved";
     std::filesystem::create_directories(saved);
-    for (const FileContent& file : detectionFiles(simulated_.session, simulated_.pass, {}))
+    for (const FileContent& file : detectionFiles(simulated_.session, simulated_.detections, {}))
       std::ofstream(saved / file.path) << contentOf(file);
     Session other = simulated_.session;
     other.further_boards[0].board.cols += 1;

@@ -37,7 +37,7 @@ class TestShakyHands : public QObject {
     Session session = test::sessionFor(scenario);
     session.options.report.edit().split_half_check = false;
     const CalibrationRun run = calibrate(session, test::perfectPass(scenario, 0.05, 0.015), RunContext{});
-    const ImuData& imu = run.pass.imus.front();
+    const ImuData& imu = run.detections.imus.front();
     const double sigma_m_s2 = imu.noise.accelerometer_density * std::sqrt(imu.rate_hz());
     const double scale = run.result.imus.front().accelerometer_rms_m_s2 / sigma_m_s2;
     QVERIFY2(scale > 0.7 && scale < largest_scale, qPrintable(QString::number(scale)));

@@ -22,10 +22,11 @@ class TestSplitHalfCheck : public QObject {
 
   CalibrationInput input() const {
     CalibrationInput all;
-    all.start_ns = run_.pass.start_ns;
+    all.start_ns = run_.detections.start_ns;
     all.board = simulated_.session.board;
-    all.cameras = {{simulated_.session.cameras[0].name, run_.pass.lenses[0], run_.pass.cameras[0]}};
-    all.imus = run_.pass.imus;
+    all.cameras = {
+        {simulated_.session.cameras[0].name, run_.detections.lenses[0], run_.detections.cameras[0]}};
+    all.imus = run_.detections.imus;
     return all;
   }
   static std::size_t circles(const CalibrationInput& half) {
@@ -37,7 +38,7 @@ class TestSplitHalfCheck : public QObject {
  private slots:
   void initTestCase() {
     simulated_ = simulatePass(8.0);
-    run_ = calibrate(simulated_.session, simulated_.pass, {});
+    run_ = calibrate(simulated_.session, simulated_.detections, {});
   }
 
   void halves_shareNothing() {
@@ -97,7 +98,7 @@ class TestSplitHalfCheck : public QObject {
 
   void camerasAlone_areComparedWithoutGravity() {
     const SimulatedPass stereo = simulatePass(8.0, "stereo");
-    const CalibrationRun run = calibrate(stereo.session, stereo.pass, {});
+    const CalibrationRun run = calibrate(stereo.session, stereo.detections, {});
     QVERIFY(run.result.split_half_check.has_value());
     const SplitHalfCheck& validation = *run.result.split_half_check;
     QVERIFY2(validation.failure.empty(), validation.failure.c_str());
@@ -119,7 +120,7 @@ class TestSplitHalfCheck : public QObject {
     session.cameras[0].prior.time_offset = KnownNumber{found.time_offset_s};
     session.cameras[0].prior.translation = KnownVector{found.reference_from_camera.translation_m};
     session.options.optimisation.edit().free_imu_intrinsics = false;
-    const CalibrationRun run = calibrate(session, simulated_.pass, {});
+    const CalibrationRun run = calibrate(session, simulated_.detections, {});
     QVERIFY(run.result.state.cameras[0].time_offset_s == found.time_offset_s);
     QCOMPARE(run.result.uncertainty.given.size(), std::size_t{5});
     const std::string note = "given, not estimated: left.translation, left.time_offset";
@@ -143,7 +144,7 @@ class TestSplitHalfCheck : public QObject {
     Session session = simulated_.session;
     session.options.optimisation.edit().free_time_offsets = false;
     session.options.report.edit().split_half_check = false;
-    const CalibrationRun run = calibrate(session, simulated_.pass, {});
+    const CalibrationRun run = calibrate(session, simulated_.detections, {});
     QVERIFY(run.result.state.cameras[0].time_offset_s == 0.0);
     QVERIFY(std::abs(run_.result.state.cameras[0].time_offset_s) > 1e-3);
     QVERIFY(run.result.status == CalibrationStatus::Doubtful);
@@ -174,7 +175,7 @@ class TestSplitHalfCheck : public QObject {
   void switchedOff_costsNothing() {
     Session session = simulated_.session;
     session.options.report.edit().split_half_check = false;
-    const CalibrationRun without = calibrate(session, simulated_.pass, {});
+    const CalibrationRun without = calibrate(session, simulated_.detections, {});
     QVERIFY(!without.result.split_half_check.has_value());
     QCOMPARE(without.result.timing.split_half_check_s, 0.0);
     QVERIFY(without.result.state.cameras[0].reference_from_camera.translation_m ==

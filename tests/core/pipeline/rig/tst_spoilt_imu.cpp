@@ -97,9 +97,9 @@ void TestSpoiltImu::spoiltSamples_areLeftOutAndNamed() {
   scenario.duration_s = 10.0;
   Session session = test::sessionFor(scenario);
   session.options.report.edit().split_half_check = false;
-  DetectionResult pass = test::perfectPass(scenario, 0.05, 0.015);
-  spoil(pass.imus.front().samples);
-  const CalibrationRun run = calibrate(session, std::move(pass), RunContext{});
+  DetectionResult detections = test::perfectPass(scenario, 0.05, 0.015);
+  spoil(detections.imus.front().samples);
+  const CalibrationRun run = calibrate(session, std::move(detections), RunContext{});
   QString notes;
   for (const std::string& each : run.result.notes) notes += QString::fromStdString(each) + "\n";
   QVERIFY2(notes.contains(QRegularExpression(note)), qPrintable(notes));
@@ -121,9 +121,9 @@ void TestSpoiltImu::scatteringStamps_areTheFirstReason() {
   recorded.scenario = readScenario(test::scenarioPath("davis346_10s"));
   recorded.scenario.imus.front().rate_hz = 200.0;
   recorded.session = test::sessionFor(recorded.scenario);
-  recorded.pass = test::perfectPass(recorded.scenario, 0.05, 0.015);
+  recorded.detections = test::perfectPass(recorded.scenario, 0.05, 0.015);
   test::perturbation("stamp jitter").apply(recorded, 5.0);
-  const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+  const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
   const QString reason = QString::fromStdString(run.result.reason);
   QVERIFY(run.result.status == CalibrationStatus::Doubtful);
   QVERIFY2(reason.contains(QRegularExpression("^[^;]*: Sample intervals scatter by ")), qPrintable(reason));
@@ -149,16 +149,16 @@ void TestSpoiltImu::coarseStamps_widenTheTimeOffset() {
   recorded.scenario.imus.front().rate_hz = rate_hz;
   recorded.session = test::sessionFor(recorded.scenario);
   recorded.session.options.report.edit().split_half_check = false;
-  recorded.pass = test::perfectPass(recorded.scenario, 0.05, 0.015);
+  recorded.detections = test::perfectPass(recorded.scenario, 0.05, 0.015);
   const std::int64_t step_ns = std::llround(1e6 * step_ms);
-  ImuData& imu = recorded.pass.imus.front();
+  ImuData& imu = recorded.detections.imus.front();
   for (ImuSample& sample : imu.samples) {
     const std::int64_t shifted_ns = sample.time_ns + std::llround(part * static_cast<double>(step_ns));
     sample.time_ns = shifted_ns - shifted_ns % step_ns;
   }
-  recorded.pass.imu_stamp_steps_s = {
-      putInOrder("/imu", imu.samples.front().time_ns, imu.samples, recorded.pass.faults)};
-  const CalibrationRun run = calibrate(recorded.session, recorded.pass, RunContext{});
+  recorded.detections.imu_stamp_steps_s = {
+      putInOrder("/imu", imu.samples.front().time_ns, imu.samples, recorded.detections.faults)};
+  const CalibrationRun run = calibrate(recorded.session, recorded.detections, RunContext{});
   QString notes;
   for (const std::string& each : run.result.notes) notes += QString::fromStdString(each) + "\n";
   QVERIFY2(notes.contains(QString("steps of %1 ms").arg(step_ms)), qPrintable(notes));

@@ -63,7 +63,7 @@ class TestResultFiles : public QObject {
  private slots:
   void initTestCase() {
     simulated_ = simulatePass(6.0);
-    run_ = calibrate(simulated_.session, simulated_.pass, {});
+    run_ = calibrate(simulated_.session, simulated_.detections, {});
     writeResultFiles(folder_.path().toStdString(), simulated_.session, shared(run_), "test", "log");
     page_ = readFileForResultFiles(path("report.html"));
     text_ = checkedText(page_);
@@ -134,7 +134,7 @@ class TestResultFiles : public QObject {
     QVERIFY(begin > 0);
     const QString svg = page_.mid(begin, page_.indexOf("</svg>", begin) - begin);
     const QString dots = svg.mid(svg.indexOf("class=\"dots"));
-    const Resolution size = run_.pass.resolutions_px[0];
+    const Resolution size = run_.detections.resolutions_px[0];
     int inside = 0;
     for (qsizetype i = 1; i < lines.size(); ++i) {
       const double x = lines[i].section(',', 0, 0).toDouble(), y = lines[i].section(',', 1, 1).toDouble();
@@ -147,11 +147,11 @@ class TestResultFiles : public QObject {
     Session session = simulated_.session;
     session.recording = std::string("rec") + "<b>&\"'.bag";
     CalibrationRun run = run_;
-    session.cameras[0].name = run.pass.cameras[0].camera = kHostile;
-    session.imus[0].name = run.pass.imus[0].name = session.reference = "\"><img src=x onerror=1>";
+    session.cameras[0].name = run.detections.cameras[0].camera = kHostile;
+    session.imus[0].name = run.detections.imus[0].name = session.reference = "\"><img src=x onerror=1>";
     run.result.reason = "</style></p><script>1</script>";
     run.result.notes.emplace_back("a\x01note ]]> <i>");
-    run.pass.faults.push_back({"<s>", FaultKind::Gap, 0.0, "<u>gap</u>"});
+    run.detections.faults.push_back({"<s>", FaultKind::Gap, 0.0, "<u>gap</u>"});
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), session, shared(run), "1<2", "log");
     const QString page = readFileForResultFiles(folder.filePath("report.html"));
@@ -266,7 +266,7 @@ class TestResultFiles : public QObject {
   void frameCamera_isNamedAsOne() {
     QVERIFY(!readFileForResultFiles(path("result.yaml")).contains("kind:"));
     CalibrationRun run = run_;
-    run.pass.cameras[0].kind = CameraKind::Frames;
+    run.detections.cameras[0].kind = CameraKind::Frames;
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");
     const NamedResult read = readResultYaml(folder.filePath("result.yaml").toStdString());
@@ -275,11 +275,11 @@ class TestResultFiles : public QObject {
 
   void failedCalibration_hasItsReasonAndItsDetections() {
     QTemporaryDir folder;
-    DetectionResult pass = simulated_.pass;
-    pass.cameras[0].views.clear();
-    for (WindowReport& window : pass.cameras[0].windows) window.outcome = WindowOutcome::NoLattice;
+    DetectionResult detections = simulated_.detections;
+    detections.cameras[0].views.clear();
+    for (WindowReport& window : detections.cameras[0].windows) window.outcome = WindowOutcome::NoLattice;
     writeFailure(folder.path().toStdString(), simulated_.session,
-                 QualityWarning{"the board was <never> found"}, "test", "log", pass);
+                 QualityWarning{"the board was <never> found"}, "test", "log", detections);
     const QString page = readFileForResultFiles(folder.filePath("report.html"));
     const QString text = checkedText(page);
     QVERIFY2(text.contains("the board was <never> found") && text.contains("failed"),
@@ -301,9 +301,9 @@ class TestResultFiles : public QObject {
   void advice_isGivenOnlyWhereTheDataSaySo() {
     QVERIFY(!text_.contains("Avoid data loss"));
     CalibrationRun run = run_;
-    run.pass.faults.push_back({"imu", FaultKind::Gap, 1.0, "gap of 0.3 s at 1.0 s"});
-    for (ImuSample& sample : run.pass.imus[0].samples) sample.angular_rate_rad_s.z() *= 0.01;
-    for (BoardView& view : run.pass.cameras[0].views)
+    run.detections.faults.push_back({"imu", FaultKind::Gap, 1.0, "gap of 0.3 s at 1.0 s"});
+    for (ImuSample& sample : run.detections.imus[0].samples) sample.angular_rate_rad_s.z() *= 0.01;
+    for (BoardView& view : run.detections.cameras[0].views)
       std::erase_if(view.circles, [](const CircleObservation& c) { return c.centre_px.x() > 120.0; });
     QTemporaryDir folder;
     writeResultFiles(folder.path().toStdString(), simulated_.session, shared(run), "test", "log");

@@ -4,7 +4,7 @@
 #include "core/base/time.h"
 #include "core/frontend/detection_options.h"
 #include "core/optimisation/optimisation_options.h"
-#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/detection/view_rejection.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/run_data.h"
 #include "core/pipeline/runs/saved_run.h"
@@ -63,8 +63,8 @@ class TestSavedRun : public QObject {
     writeForSavedRun(scratch() / "recording.bag", "a recording");
     simulated_.session.recording = scratch() / "recording.bag";
     simulated_.session.options.optimisation.edit().max_iterations += 1;
-    const DetectionResult pass = withoutViews(simulated_.pass, 0, std::vector{7, 20, 21, 40, 60});
-    run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, pass, {}));
+    const DetectionResult detections = withoutViews(simulated_.detections, 0, std::vector{7, 20, 21, 40, 60});
+    run_ = std::make_shared<CalibrationRun>(calibrate(simulated_.session, detections, {}));
     std::filesystem::create_directories(result());
     writeResultFiles(result(), simulated_.session, run_, "test", "the log\n");
   }
@@ -73,11 +73,12 @@ class TestSavedRun : public QObject {
     const SavedRun saved = readSavedRun(result());
     QVERIFY2(saved.missing.empty(), qPrintable(missingIn(saved)));
     QVERIFY(runData(*saved.run) == runData(*run_));
-    QCOMPARE(static_cast<int>(saved.run->pass.rejected_views.at(0).size()), kRejected);  // can be undone
+    QCOMPARE(static_cast<int>(saved.run->detections.rejected_views.at(0).size()),
+             kRejected);  // can be undone
     const CalibrationResult& result = saved.run->result;
     QVERIFY(result.circle_residuals.size() > 1000);
     QVERIFY(result.iterations.size() > 3 && !result.state.imu_in_world_m.control_points.empty());
-    QVERIFY(saved.run->pass.imus[0].samples.size() == run_->pass.imus[0].samples.size());
+    QVERIFY(saved.run->detections.imus[0].samples.size() == run_->detections.imus[0].samples.size());
     QCOMPARE(sessionYaml(saved.session, "/"), sessionYaml(simulated_.session, "/"));
     QVERIFY(QString::fromStdString(saved.log).startsWith("the log"));
     const NamedResult before = namedRun(simulated_.session, run_, "test"),
@@ -118,8 +119,8 @@ class TestSavedRun : public QObject {
     QVERIFY(result.circle_residuals.back().residual_px == before.circle_residuals.back().residual_px);
     QVERIFY(result.circle_residuals.back().sigma_px ==
             (field.contains("sigma_px") ? Eigen::Vector2d::Zero() : before.circle_residuals.back().sigma_px));
-    const ImuSample &sample = read.run.pass.imus[0].samples.back(),
-                    &sample_before = run_->pass.imus[0].samples.back();
+    const ImuSample &sample = read.run.detections.imus[0].samples.back(),
+                    &sample_before = run_->detections.imus[0].samples.back();
     QVERIFY(sample.time_ns == sample_before.time_ns && sample.measured_by == MeasuredBy::Both);
     QVERIFY(sample.angular_rate_rad_s == sample_before.angular_rate_rad_s);
   }
@@ -129,12 +130,12 @@ class TestSavedRun : public QObject {
     run.result.timing.read_s = std::bit_cast<double>(0x7ff8000000012345);
     run.result.timing.detect_s = -0.0;
     run.result.memory_peak_mb = std::numeric_limits<double>::denorm_min();
-    run.pass.imus[0].samples.back().time_ns = kLatestTime_ns;
+    run.detections.imus[0].samples.back().time_ns = kLatestTime_ns;
     const CalibrationRun read = parseRunData(runData(run)).run;
     QVERIFY(std::bit_cast<std::uint64_t>(read.result.timing.read_s) == 0x7ff8000000012345);
     QVERIFY(std::signbit(read.result.timing.detect_s));
     QCOMPARE(read.result.memory_peak_mb, run.result.memory_peak_mb);
-    QVERIFY(read.pass.imus[0].samples.back().time_ns == kLatestTime_ns);
+    QVERIFY(read.detections.imus[0].samples.back().time_ns == kLatestTime_ns);
   }
 
   // For any changed byte, each part is unchanged or missing.
@@ -143,7 +144,7 @@ class TestSavedRun : public QObject {
     std::set<std::string> parts;
     for (int k = 0; k < 8; ++k)
       parts.insert(
-          runData({k & 1 ? run_->result : CalibrationResult{}, k & 2 ? run_->pass : DetectionResult{},
+          runData({k & 1 ? run_->result : CalibrationResult{}, k & 2 ? run_->detections : DetectionResult{},
                    k & 4 ? run_->intrinsics : decltype(run_->intrinsics){}}));
     const std::size_t observations = content.find("observations ");
     QVERIFY(observations < content.size());
@@ -172,7 +173,7 @@ class TestSavedRun : public QObject {
   void rejectedWindows_areCountedAndNamedAlike() {
     const CameraFit& fit = run_->result.cameras[0];
     QCOMPARE(fit.windows_rejected, kRejected);
-    const auto views = static_cast<int>(run_->pass.cameras[0].views.size());
+    const auto views = static_cast<int>(run_->detections.cameras[0].views.size());
     QCOMPARE(fit.windows_complete + fit.windows_partial, views);
 
     QMap<QString, int> outcomes;
@@ -205,7 +206,7 @@ class TestSavedRun : public QObject {
   }
 
   void durations_areOfThisRun() {
-    DetectionResult before = simulated_.pass;
+    DetectionResult before = simulated_.detections;
     before.read_s = before.detect_s = 1000.0;
     const Timing timing =
         calibrate(simulated_.session, withoutViews(before, 0, std::vector{1}), {}).result.timing;
@@ -243,17 +244,17 @@ class TestSavedRun : public QObject {
     QVERIFY2(missingIn(saved).contains(said), qPrintable(missingIn(saved)));
     const CalibrationResult& result = saved.run->result;
     QCOMPARE(!result.state.imu_in_world_m.control_points.empty(), has_trajectory);
-    QCOMPARE(!saved.run->pass.imus.empty(), has_samples);
+    QCOMPARE(!saved.run->detections.imus.empty(), has_samples);
     QVERIFY(result.status == run_->result.status);
     const double moved_m = (result.state.cameras[0].reference_from_camera.translation_m -
                             run_->result.state.cameras[0].reference_from_camera.translation_m)
                                .norm();
     QVERIFY(moved_m < 1e-9);
     // Views are read from the tables if the data lacks them.
-    QCOMPARE(saved.run->pass.cameras[0].views.size(), run_->pass.cameras[0].views.size());
-    QCOMPARE(saved.run->pass.cameras[0].windows.size(), run_->pass.cameras[0].windows.size());
+    QCOMPARE(saved.run->detections.cameras[0].views.size(), run_->detections.cameras[0].views.size());
+    QCOMPARE(saved.run->detections.cameras[0].windows.size(), run_->detections.cameras[0].windows.size());
     for (const CircleResidual& r : result.circle_residuals)
-      QVERIFY(static_cast<std::size_t>(r.view) < saved.run->pass.cameras[0].views.size());
+      QVERIFY(static_cast<std::size_t>(r.view) < saved.run->detections.cameras[0].views.size());
   }
 
   // result.yaml is the truth: run.data is its cache.
@@ -272,7 +273,8 @@ class TestSavedRun : public QObject {
     QVERIFY(missingIn(saved).contains("Its trajectory, convergence and residuals are missing"));
     QVERIFY(whyRunDataIsForeign(folder / "result.yaml").value_or("").find("changed later") !=
             std::string::npos);
-    QCOMPARE(saved.run->pass.cameras[0].views.size(), run_->pass.cameras[0].views.size());  // of the tables
+    QCOMPARE(saved.run->detections.cameras[0].views.size(),
+             run_->detections.cameras[0].views.size());  // of the tables
   }
 
   void runDataOfAnotherRun_isNotMixedIn() {
@@ -315,7 +317,7 @@ class TestSavedRun : public QObject {
     QCOMPARE(saved.session.cameras.size(), simulated_.session.cameras.size());
     QCOMPARE(saved.session.board.rows, simulated_.session.board.rows);
     QCOMPARE(QString::fromStdString(saved.session.recording.filename().string()), QString("recording.bag"));
-    QCOMPARE(saved.run->pass.cameras[0].views.size(), run_->pass.cameras[0].views.size());
+    QCOMPARE(saved.run->detections.cameras[0].views.size(), run_->detections.cameras[0].views.size());
     QVERIFY(saved.run->result.uncertainty.columns == run_->result.uncertainty.columns);
   }
 

@@ -1,6 +1,6 @@
 // A scenario as a folder: recording, session and truth, which fit each other.
 #include "core/base/error.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 #include "core/pipeline/simulate/simulation.h"
 #include "core/report/result_yaml.h"
@@ -27,10 +27,10 @@ class TestSimulation : public QObject {
     const QTemporaryDir folder;
     const SimulationSummary summary = simulate(scenario_, folder.path().toStdString(), {});
     const Session session = readSession(summary.session);
-    const DetectionResult pass = readAndDetect(session, {});
-    QCOMPARE(pass.cameras.front().events, summary.events);
-    QCOMPARE(static_cast<std::uint64_t>(pass.imus.front().samples.size()), summary.imu_samples);
-    QCOMPARE(pass.start_ns / 1'000'000'000, scenario_.start_ns / 1'000'000'000);
+    const DetectionResult detections = readAndDetect(session, {});
+    QCOMPARE(detections.cameras.front().events, summary.events);
+    QCOMPARE(static_cast<std::uint64_t>(detections.imus.front().samples.size()), summary.imu_samples);
+    QCOMPARE(detections.start_ns / 1'000'000'000, scenario_.start_ns / 1'000'000'000);
     const NamedResult truth = readResultYaml(summary.truth);
     QVERIFY(truth.result->state.cameras.front().reference_from_camera.translation_m.isApprox(
         scenario_.cameras.front().imu_from_camera.translation_m));

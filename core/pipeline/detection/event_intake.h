@@ -5,7 +5,7 @@
 #include "core/data/event.h"
 #include "core/data/recording.h"
 #include "core/frontend/edge_crossings.h"
-#include "core/pipeline/pass/camera_views.h"
+#include "core/pipeline/detection/camera_views.h"
 #include "core/pipeline/session/session.h"
 #include "core/recording/read_out_load.h"
 #include "core/recording/stray_stamps.h"

@@ -1,4 +1,4 @@
-#include "core/pipeline/pass/board_size_check.h"
+#include "core/pipeline/detection/board_size_check.h"
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"

@@ -1,7 +1,7 @@
-#include "core/pipeline/pass/camera_views.h"
+#include "core/pipeline/detection/camera_views.h"
 
-#include "core/pipeline/pass/board_size_check.h"
-#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/detection/board_size_check.h"
+#include "core/pipeline/detection/session_recording.h"
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"

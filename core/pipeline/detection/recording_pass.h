@@ -46,12 +46,12 @@ DetectionResult readImus(const Session& session, std::int64_t start_ns, const Ru
 
 // Combines the data with the session's sensors. Moves the data of cameras and IMUs out of the pass: in long
 // recordings they are most of the memory.
-CalibrationInput makeInput(const Session& session, DetectionResult& pass);
+CalibrationInput makeInput(const Session& session, DetectionResult& detections);
 
 // Statements of the session about mirrored images and signs of accelerations.
 StatedSigns statedSigns(const Session& session);
 
 // Moves the data back; an empty input has no effect.
-void restorePass(CalibrationInput input, DetectionResult& pass);
+void restorePass(CalibrationInput input, DetectionResult& detections);
 
 }  // namespace evical

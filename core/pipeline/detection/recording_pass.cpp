@@ -1,10 +1,10 @@
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 
-#include "core/pipeline/pass/board_size_check.h"
-#include "core/pipeline/pass/bounded_queue.h"
-#include "core/pipeline/pass/camera_views.h"
-#include "core/pipeline/pass/event_intake.h"
-#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/detection/board_size_check.h"
+#include "core/pipeline/detection/bounded_queue.h"
+#include "core/pipeline/detection/camera_views.h"
+#include "core/pipeline/detection/event_intake.h"
+#include "core/pipeline/detection/session_recording.h"
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"
@@ -280,13 +280,13 @@ class ReadingPass {
   SessionTimeRange range_;
 };
 
-void checkSamples(const Session& session, const DetectionResult& pass) {
-  for (std::size_t k = 0; k < pass.imus.size(); ++k) {
-    const std::size_t count = pass.imus[k].samples.size();
+void checkSamples(const Session& session, const DetectionResult& detections) {
+  for (std::size_t k = 0; k < detections.imus.size(); ++k) {
+    const std::size_t count = detections.imus[k].samples.size();
     if (count >= kFewestImuSamples) continue;
     const std::filesystem::path& own = session.imus[k].recording;
     throw badInput((own.empty() ? session.recording : own).string(),
-                   fmt::format("IMU {} has {}{}", pass.imus[k].name,
+                   fmt::format("IMU {} has {}{}", detections.imus[k].name,
                                count == 0 ? "no samples" : counted(count, "sample"),
                                session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
                    "Check the recording " + howTo(HowTo::Inspect));
@@ -367,21 +367,21 @@ void holdTimeOffsets(CalibrationInput& input) {
 
 }  // namespace
 
-CalibrationInput makeInput(const Session& session, DetectionResult& pass) {
+CalibrationInput makeInput(const Session& session, DetectionResult& detections) {
   CalibrationInput input;
-  input.start_ns = pass.start_ns;
+  input.start_ns = detections.start_ns;
   input.board_name = session.board_name;
   input.board = session.board;
   input.further_boards.assign(session.further_boards.begin(), session.further_boards.end());
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
     const SessionCamera& camera = session.cameras[k];
-    input.cameras.push_back(
-        {camera.name, pass.lenses.at(k), std::move(pass.cameras[k]), camera.prior, camera.shutter});
+    input.cameras.push_back({camera.name, detections.lenses.at(k), std::move(detections.cameras[k]),
+                             camera.prior, camera.shutter});
     if (const std::size_t sensor = session.sensorOf(k); sensor != k)
       input.cameras.back().same_sensor_as = sensor;
     input.cameras.back().board = session.boardIndexOf(k);
   }
-  input.imus = std::move(pass.imus);
+  input.imus = std::move(detections.imus);
   for (std::size_t k = 0; k < session.imus.size(); ++k) input.imus[k].prior = session.imus[k].prior;
   input.reference_imu = session.referenceImu();
   input.reference_camera = session.referenceCamera();
@@ -403,12 +403,12 @@ StatedSigns statedSigns(const Session& session) {
   return stated;
 }
 
-void restorePass(CalibrationInput input, DetectionResult& pass) {
+void restorePass(CalibrationInput input, DetectionResult& detections) {
   if (input.cameras.empty()) return;
   for (std::size_t k = 0; k < input.cameras.size(); ++k)
-    pass.cameras[k] = std::move(input.cameras[k].observations);
-  pass.imus = std::move(input.imus);
-  for (ImuData& imu : pass.imus) imu.prior = {};
+    detections.cameras[k] = std::move(input.cameras[k].observations);
+  detections.imus = std::move(input.imus);
+  for (ImuData& imu : detections.imus) imu.prior = {};
 }
 
 }  // namespace evical

@@ -1,8 +1,8 @@
 // A part of a recording: the data within time_range_s, read from no more of the file than necessary.
 #include "core/base/atomic_file.h"
 #include "core/base/error.h"
-#include "core/pipeline/pass/recording_pass.h"
-#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/detection/recording_pass.h"
+#include "core/pipeline/detection/session_recording.h"
 #include "core/pipeline/rig/calibration_checks.h"
 #include "core/pipeline/simulate/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
@@ -129,9 +129,9 @@ class TestTimeRange : public QObject {
     session.time_range_s = {3.0, 8.0};
     const std::int64_t start_ns = SessionRecording(session).start_ns();
     QCOMPARE(qint64(start_ns), qint64(100'000'000'000));
-    const DetectionResult pass = readImus(session, start_ns, {});
-    QCOMPARE(qint64(pass.imus[0].samples.front().time_ns), qint64(103'000'000'000));
-    QCOMPARE(qint64(pass.imus[0].samples.back().time_ns), qint64(108'000'000'000));
+    const DetectionResult detections = readImus(session, start_ns, {});
+    QCOMPARE(qint64(detections.imus[0].samples.front().time_ns), qint64(103'000'000'000));
+    QCOMPARE(qint64(detections.imus[0].samples.back().time_ns), qint64(108'000'000'000));
     session.time_range_s = {20.0, 30.0};
     try {
       readAndDetect(session, {});

@@ -1,4 +1,4 @@
-#include "core/pipeline/pass/board_size_check.h"
+#include "core/pipeline/detection/board_size_check.h"
 
 #include "core/base/error.h"
 #include "tests/support/test_program.h"

@@ -1,5 +1,5 @@
 // Settings of a session for a blinking board, and for several recordings of it.
-#include "core/pipeline/pass/camera_views.h"
+#include "core/pipeline/detection/camera_views.h"
 #include "core/pipeline/session/session.h"
 #include "tests/core/pipeline/session/refused_session.h"
 #include "tests/support/test_program.h"

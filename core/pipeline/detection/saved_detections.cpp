@@ -1,11 +1,11 @@
-#include "core/pipeline/pass/saved_detections.h"
+#include "core/pipeline/detection/saved_detections.h"
 
 #include "core/base/element.h"
 #include "core/base/yaml_node.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/format/quantity_yaml.h"
 #include "core/intrinsics/intrinsics_uncertainty.h"
-#include "core/pipeline/pass/detections_check.h"
+#include "core/pipeline/detection/detections_check.h"
 #include "core/pipeline/session/given_points.h"
 #include "core/report/detections_csv.h"
 
@@ -42,10 +42,10 @@ LatticeEnds endsFrom(const YamlNode& node) {
   return {count(0), count(1), count(2), count(3)};
 }
 
-std::string cameraYaml(const SessionCamera& camera, const DetectionResult& pass, std::size_t k,
+std::string cameraYaml(const SessionCamera& camera, const DetectionResult& detections, std::size_t k,
                        const std::optional<IntrinsicsResult>& found) {
-  const BoardObservations& seen = pass.cameras[k];
-  const Resolution size = elementOrNone(pass.resolutions_px, k);
+  const BoardObservations& seen = detections.cameras[k];
+  const Resolution size = elementOrNone(detections.resolutions_px, k);
   std::string text = fmt::format("  {}:\n", yamlText(camera.name));
   for (const DetectionKey& key : detectionKeys(camera))
     text += fmt::format("    {}: {}\n", key.name, yamlText(key.value));
@@ -57,16 +57,16 @@ std::string cameraYaml(const SessionCamera& camera, const DetectionResult& pass,
   if (seen.polarity_delay)
     text += fmt::format("    polarity_delay: {{later_s: {}, std_s: {}}}\n", seen.polarity_delay->later_s,
                         seen.polarity_delay->std_s);
-  if (pass.lenses[k].detection_intrinsics)
-    text += "    detection_intrinsics:\n" + intrinsicsYaml(*pass.lenses[k].detection_intrinsics, 6);
+  if (detections.lenses[k].detection_intrinsics)
+    text += "    detection_intrinsics:\n" + intrinsicsYaml(*detections.lenses[k].detection_intrinsics, 6);
   if (found) text += "    found_first:\n" + foundIntrinsicsYaml(*found, 6);
   return text;
 }
 
 // Faults, without those of IMUs, which are detected again.
-std::string faultsYaml(const Session& session, const DetectionResult& pass) {
+std::string faultsYaml(const Session& session, const DetectionResult& detections) {
   std::string text;
-  for (const RecordingFault& fault : pass.faults)
+  for (const RecordingFault& fault : detections.faults)
     if (!isOfImu(fault, session))
       text += fmt::format("  - {{stream: {}, kind: {}, at_s: {}, text: {}}}\n", yamlText(fault.stream),
                           nameOf(fault.kind), fault.at_s, yamlText(fault.text));
@@ -80,18 +80,19 @@ std::string optionsYaml(const Session& session) {
   return text.empty() ? "options: {}\n" : "options:\n" + text;
 }
 
-std::string detectionsYaml(const Session& session, const DetectionResult& pass,
+std::string detectionsYaml(const Session& session, const DetectionResult& detections,
                            std::span<const std::optional<IntrinsicsResult>> intrinsics) {
   std::string text = fmt::format("evical_detections: 1\nrecording: {}\nstart_ns: {}\n",
-                                 yamlText(session.recording.filename().string()), pass.start_ns);
+                                 yamlText(session.recording.filename().string()), detections.start_ns);
   if (session.time_range_s)
     text += fmt::format("time_range_s: [{}, {}]\n", (*session.time_range_s)[0], (*session.time_range_s)[1]);
   text += fmt::format("board: {}\n{}cameras:\n", boardYaml(session.board), optionsYaml(session));
   for (std::size_t k = 0; k < session.cameras.size(); ++k) {
-    text += cameraYaml(session.cameras[k], pass, k, k < intrinsics.size() ? intrinsics[k] : std::nullopt);
+    text +=
+        cameraYaml(session.cameras[k], detections, k, k < intrinsics.size() ? intrinsics[k] : std::nullopt);
     if (session.boardIndexOf(k) > 0) text += fmt::format("    board: {}\n", boardYaml(session.boardOf(k)));
   }
-  return text + faultsYaml(session, pass);
+  return text + faultsYaml(session, detections);
 }
 
 // Lens that the session gives and lens of the detection. Cameras of one sensor share both.
@@ -112,7 +113,7 @@ void restoreCamera(const YamlNode& root, const Session& session, std::size_t k,
   const SessionCamera& camera = session.cameras[k];
   const YamlNode map = checkedCamera(root, camera);
   checkBoard(map.find("board").value_or(root["board"]), session.boardOf(k));
-  BoardObservations& seen = restored.pass.cameras.emplace_back();
+  BoardObservations& seen = restored.detections.cameras.emplace_back();
   seen.camera = camera.name;
   seen.kind = static_cast<CameraKind>(map["kind"].choice(kKinds));
   seen.events = static_cast<std::uint64_t>(std::max<std::int64_t>(0, map["measurements"].nanoseconds()));
@@ -120,12 +121,12 @@ void restoreCamera(const YamlNode& root, const Session& session, std::size_t k,
   if (const auto step = map.find("stamp_step_s")) seen.stamp_step_s = step->real();
   if (const auto delay = map.find("polarity_delay"))
     seen.polarity_delay = PolarityDelay{(*delay)["later_s"].real(), (*delay)["std_s"].real()};
-  restored.pass.resolutions_px.push_back(checkedResolution(map, camera));
+  restored.detections.resolutions_px.push_back(checkedResolution(map, camera));
   const CameraLens lens = restoredLens(root, session, k);
   restored.intrinsics.emplace_back();
   if (lens.foundFirst() && session.sensorOf(k) == k)
     restored.intrinsics.back() = foundIntrinsicsFrom(map["found_first"], *lens.detection_intrinsics);
-  restored.pass.lenses.push_back(lens);
+  restored.detections.lenses.push_back(lens);
 }
 
 std::vector<RecordingFault> faultsFrom(const YamlNode& list) {
@@ -147,13 +148,13 @@ void keepWithin(const std::optional<std::array<double, 2>>& range_s, Items& item
   });
 }
 
-void restoreViews(const std::filesystem::path& folder, const Session& session, DetectionResult& pass) {
+void restoreViews(const std::filesystem::path& folder, const Session& session, DetectionResult& detections) {
   std::vector<int> point_counts;
   for (std::size_t k = 0; k < session.cameras.size(); ++k)
     point_counts.push_back(session.boardOf(k).pointCount());
   std::vector<BoardObservations> saved =
       readDetections(folder, *std::max_element(point_counts.begin(), point_counts.end()));
-  for (BoardObservations& camera : pass.cameras) {
+  for (BoardObservations& camera : detections.cameras) {
     for (BoardObservations& each : saved) {
       if (each.camera != camera.camera) continue;
       camera.views = std::move(each.views);
@@ -164,25 +165,28 @@ void restoreViews(const std::filesystem::path& folder, const Session& session, D
   }
 }
 
-void readSamples(const Session& session, const RunContext& context, DetectionResult& pass) {
-  DetectionResult samples = readImus(session, pass.start_ns, context);
-  pass.imus = std::move(samples.imus);
-  pass.imu_stamp_steps_s = std::move(samples.imu_stamp_steps_s);
-  pass.read_s = samples.read_s;
+void readSamples(const Session& session, const RunContext& context, DetectionResult& detections) {
+  DetectionResult samples = readImus(session, detections.start_ns, context);
+  detections.imus = std::move(samples.imus);
+  detections.imu_stamp_steps_s = std::move(samples.imu_stamp_steps_s);
+  detections.read_s = samples.read_s;
   for (RecordingFault& fault : samples.faults) {
     const auto same = [&](const RecordingFault& known) { return known.text == fault.text; };
-    if (std::none_of(pass.faults.begin(), pass.faults.end(), same)) pass.faults.push_back(std::move(fault));
+    if (std::none_of(detections.faults.begin(), detections.faults.end(), same))
+      detections.faults.push_back(std::move(fault));
   }
-  checkOverlap(session, pass);
+  checkOverlap(session, detections);
 }
 
 }  // namespace
 
-std::vector<FileContent> detectionFiles(const Session& session, const DetectionResult& pass,
+std::vector<FileContent> detectionFiles(const Session& session, const DetectionResult& detections,
                                         std::span<const std::optional<IntrinsicsResult>> intrinsics) {
-  return {{"detections.csv", {}, [&pass](const TextSink& sink) { detectionsCsv(pass.cameras, sink); }},
-          {"windows.csv", windowsCsv(pass.cameras)},
-          {"detections.yaml", detectionsYaml(session, pass, intrinsics)}};
+  return {{"detections.csv",
+           {},
+           [&detections](const TextSink& sink) { detectionsCsv(detections.cameras, sink); }},
+          {"windows.csv", windowsCsv(detections.cameras)},
+          {"detections.yaml", detectionsYaml(session, detections, intrinsics)}};
 }
 
 RestoredDetections restoreDetections(const std::filesystem::path& folder, const Session& session,
@@ -190,11 +194,11 @@ RestoredDetections restoreDetections(const std::filesystem::path& folder, const 
   const YamlNode root = loadDetections(folder);
   checkSession(root, session, context);
   RestoredDetections restored;
-  restored.pass.start_ns = root["start_ns"].nanoseconds();
+  restored.detections.start_ns = root["start_ns"].nanoseconds();
   for (std::size_t k = 0; k < session.cameras.size(); ++k) restoreCamera(root, session, k, restored);
-  restored.pass.faults = faultsFrom(root["faults"]);
-  restoreViews(folder, session, restored.pass);
-  readSamples(session, context, restored.pass);
+  restored.detections.faults = faultsFrom(root["faults"]);
+  restoreViews(folder, session, restored.detections);
+  readSamples(session, context, restored.detections);
   return restored;
 }
 

@@ -2,7 +2,7 @@
 #include "core/format/gray_png.h"
 #include "core/frames/gray_image.h"
 #include "core/numerics/angles.h"
-#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/detection/session_recording.h"
 #include "core/pipeline/simulate/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/core/recording/sample_recording.h"

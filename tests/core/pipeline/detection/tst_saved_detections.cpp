@@ -2,7 +2,7 @@
 // detections of another session are refused.
 #include "core/base/error.h"
 #include "core/optimisation/optimisation_options.h"
-#include "core/pipeline/pass/saved_detections.h"
+#include "core/pipeline/detection/saved_detections.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/simulate/simulation.h"
@@ -107,18 +107,18 @@ class TestSavedDetections : public QObject {
   void restored_givesTheSameResult_withoutTheFrames() {
     std::filesystem::rename(path() / "frames", path() / "moved");
     RestoredDetections restored = restoreDetections(result(), session_, RunContext{});
-    const DetectionResult pass = restored.pass;
+    const DetectionResult detections = restored.detections;
     const CalibrationRun again =
-        calibrate(session_, std::move(restored.pass), RunContext{}, std::move(restored.intrinsics));
+        calibrate(session_, std::move(restored.detections), RunContext{}, std::move(restored.intrinsics));
     std::filesystem::rename(path() / "moved", path() / "frames");
     verifySame(again);
-    QCOMPARE(again.pass.faults.size(), run_.pass.faults.size());
+    QCOMPARE(again.detections.faults.size(), run_.detections.faults.size());
     const IntrinsicsResult &before = *run_.intrinsics[1], &after = *again.intrinsics[1];
     QVERIFY(after.intrinsics == before.intrinsics && after.covariance == before.covariance);
     QCOMPARE(after.image.rms_px, before.image.rms_px);
     QCOMPARE(after.views_used, before.views_used);
     // Its own detections are the same again.
-    const std::vector<FileContent> files = detectionFiles(session_, pass, again.intrinsics);
+    const std::vector<FileContent> files = detectionFiles(session_, detections, again.intrinsics);
     for (const FileContent& file : files)
       QVERIFY2(evical::test::fileContent(result() / file.path) == QByteArray::fromStdString(contentOf(file)),
                file.path.c_str());
@@ -127,13 +127,13 @@ class TestSavedDetections : public QObject {
   void shorterTimeRange_isAPartOfThem() {
     Session shorter = session_;
     shorter.time_range_s = {1.0, 4.0};
-    const DetectionResult pass = restoreDetections(result(), shorter, RunContext{}).pass;
-    for (std::size_t k = 0; k < pass.cameras.size(); ++k) {
-      const std::vector<BoardView>& views = pass.cameras[k].views;
-      QVERIFY(views.size() > 10 && views.size() < run_.pass.cameras[k].views.size());
+    const DetectionResult detections = restoreDetections(result(), shorter, RunContext{}).detections;
+    for (std::size_t k = 0; k < detections.cameras.size(); ++k) {
+      const std::vector<BoardView>& views = detections.cameras[k].views;
+      QVERIFY(views.size() > 10 && views.size() < run_.detections.cameras[k].views.size());
       QVERIFY(views.front().time_s >= 1.0 && views.back().time_s <= 4.0);
     }
-    QVERIFY(pass.imus[0].samples.size() < run_.pass.imus[0].samples.size());
+    QVERIFY(detections.imus[0].samples.size() < run_.detections.imus[0].samples.size());
   }
 
   void boardMeasuredAgain_isTheSameBoard() {
@@ -151,12 +151,12 @@ class TestSavedDetections : public QObject {
     scenario.duration_s = 3.0;
     simulate(scenario, path, RunContext{});
     const Session session = readSession(path / "session.yaml");
-    const DetectionResult pass = readAndDetect(session, RunContext{});
-    for (const FileContent& file : detectionFiles(session, pass, {}))
+    const DetectionResult detections = readAndDetect(session, RunContext{});
+    for (const FileContent& file : detectionFiles(session, detections, {}))
       writeFileWhole(path / file.path, contentOf(file));
     const RestoredDetections restored = restoreDetections(path, session, RunContext{});
-    QVERIFY(restored.pass.lenses == pass.lenses);
-    QCOMPARE(restored.pass.cameras[1].views.size(), pass.cameras[1].views.size());
+    QVERIFY(restored.detections.lenses == detections.lenses);
+    QCOMPARE(restored.detections.cameras[1].views.size(), detections.cameras[1].views.size());
 
     Session other = session;
     other.cameras[0].intrinsics->focal_length_px *= 1.01;
@@ -172,8 +172,8 @@ class TestSavedDetections : public QObject {
     Session one = session_;
     one.cameras.pop_back();
     const RestoredDetections restored = restoreDetections(result(), one, RunContext{});
-    QCOMPARE(restored.pass.cameras.size(), std::size_t{1});
-    QCOMPARE(restored.pass.cameras[0].camera, run_.pass.cameras[0].camera);
+    QCOMPARE(restored.detections.cameras.size(), std::size_t{1});
+    QCOMPARE(restored.detections.cameras[0].camera, run_.detections.cameras[0].camera);
   }
 
   // Changes that do not affect the detection are accepted.

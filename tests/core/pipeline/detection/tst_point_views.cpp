@@ -1,6 +1,6 @@
 #include "core/base/error.h"
 #include "core/frames/frame_options.h"
-#include "core/pipeline/pass/camera_views.h"
+#include "core/pipeline/detection/camera_views.h"
 #include "tests/support/test_program.h"
 
 #include <vector>

@@ -1,4 +1,4 @@
-#include "core/pipeline/pass/view_rejection.h"
+#include "core/pipeline/detection/view_rejection.h"
 
 #include "core/base/number.h"
 
@@ -79,10 +79,10 @@ void divide(const std::vector<double>& rejected_s, BoardObservations& camera,
 
 }  // namespace
 
-DetectionResult withRejected(const DetectionResult& pass, const RejectedTimes& rejected_s) {
-  assert(rejected_s.size() == pass.cameras.size());
-  DetectionResult divided = pass;
-  divided.rejected_views.resize(pass.cameras.size());
+DetectionResult withRejected(const DetectionResult& detections, const RejectedTimes& rejected_s) {
+  assert(rejected_s.size() == detections.cameras.size());
+  DetectionResult divided = detections;
+  divided.rejected_views.resize(detections.cameras.size());
   for (std::size_t k = 0; k < rejected_s.size(); ++k)
     divide(rejected_s[k], divided.cameras[k], divided.rejected_views[k]);
   divided.read_s = divided.detect_s = 0.0;
@@ -100,31 +100,32 @@ std::vector<double> windowsAt(const std::vector<double>& times_s, const BoardObs
   return centres_s;
 }
 
-void rejectAsIn(const Session& session, DetectionResult& pass) {
-  for (std::size_t k = 0; k < std::min(session.cameras.size(), pass.cameras.size()); ++k) {
+void rejectAsIn(const Session& session, DetectionResult& detections) {
+  for (std::size_t k = 0; k < std::min(session.cameras.size(), detections.cameras.size()); ++k) {
     std::vector<double> times_s = session.cameras[k].rejected_windows_s;
     if (times_s.empty()) continue;
-    tellUnmatched(session.cameras[k], pass.cameras[k], pass.faults);
-    pass.rejected_views.resize(pass.cameras.size());
-    const std::vector<double> before_s = rejectedTimes_s(pass.cameras[k]);
+    tellUnmatched(session.cameras[k], detections.cameras[k], detections.faults);
+    detections.rejected_views.resize(detections.cameras.size());
+    const std::vector<double> before_s = rejectedTimes_s(detections.cameras[k]);
     times_s.insert(times_s.end(), before_s.begin(), before_s.end());
-    divide(times_s, pass.cameras[k], pass.rejected_views[k]);
+    divide(times_s, detections.cameras[k], detections.rejected_views[k]);
   }
 }
 
-DetectionResult withoutViews(const DetectionResult& pass, std::size_t camera, std::span<const int> views) {
-  assert(camera < pass.cameras.size());
-  RejectedTimes rejected_s = rejectedTimes_s(pass);
+DetectionResult withoutViews(const DetectionResult& detections, std::size_t camera,
+                             std::span<const int> views) {
+  assert(camera < detections.cameras.size());
+  RejectedTimes rejected_s = rejectedTimes_s(detections);
   std::vector<double>& times_s = rejected_s[camera];
   for (const int view : views)
-    times_s.push_back(pass.cameras[camera].views.at(static_cast<std::size_t>(view)).time_s);
+    times_s.push_back(detections.cameras[camera].views.at(static_cast<std::size_t>(view)).time_s);
   std::sort(times_s.begin(), times_s.end());
-  return withRejected(pass, rejected_s);
+  return withRejected(detections, rejected_s);
 }
 
-RejectedTimes rejectedTimes_s(const DetectionResult& pass) {
+RejectedTimes rejectedTimes_s(const DetectionResult& detections) {
   RejectedTimes times_s;
-  for (const BoardObservations& camera : pass.cameras) times_s.push_back(rejectedTimes_s(camera));
+  for (const BoardObservations& camera : detections.cameras) times_s.push_back(rejectedTimes_s(camera));
   return times_s;
 }
 

@@ -1,4 +1,4 @@
-#include "core/pipeline/pass/event_intake.h"
+#include "core/pipeline/detection/event_intake.h"
 
 #include "core/base/error.h"
 #include "core/base/number.h"

@@ -7,7 +7,7 @@
 #include "core/base/progress.h"
 #include "core/base/yaml_node.h"
 #include "core/data/intrinsics_result.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 
 #include <filesystem>
@@ -19,11 +19,11 @@
 namespace evical {
 
 // The three files of a pass. `intrinsics`: lenses that were calibrated first, by camera; empty if none.
-std::vector<FileContent> detectionFiles(const Session& session, const DetectionResult& pass,
+std::vector<FileContent> detectionFiles(const Session& session, const DetectionResult& detections,
                                         std::span<const std::optional<IntrinsicsResult>> intrinsics);
 
 struct RestoredDetections {
-  DetectionResult pass;
+  DetectionResult detections;
   std::vector<std::optional<IntrinsicsResult>> intrinsics;  // of the run
 };
 

@@ -1,4 +1,4 @@
-#include "core/pipeline/pass/session_recording.h"
+#include "core/pipeline/detection/session_recording.h"
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"

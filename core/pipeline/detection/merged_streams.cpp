@@ -1,4 +1,4 @@
-#include "core/pipeline/pass/merged_streams.h"
+#include "core/pipeline/detection/merged_streams.h"
 
 #include "core/base/error.h"
 #include "core/base/how_to.h"

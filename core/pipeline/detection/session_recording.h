@@ -1,7 +1,7 @@
 // Recordings of a session read as one: the streams of its sensors.
 #pragma once
 
-#include "core/pipeline/pass/merged_streams.h"
+#include "core/pipeline/detection/merged_streams.h"
 
 #include "core/pipeline/session/session.h"
 #include "core/recording/separate_imu.h"

@@ -1,4 +1,4 @@
-#include "core/pipeline/pass/detections_check.h"
+#include "core/pipeline/detection/detections_check.h"
 
 #include "core/base/file_places.h"
 #include "core/base/how_to.h"
@@ -205,17 +205,17 @@ CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera) {
   return detection_intrinsics;
 }
 
-void checkOverlap(const Session& session, const DetectionResult& pass) {
+void checkOverlap(const Session& session, const DetectionResult& detections) {
   double first_s = std::numeric_limits<double>::infinity(), last_s = -first_s;
-  for (const BoardObservations& camera : pass.cameras) {
+  for (const BoardObservations& camera : detections.cameras) {
     if (camera.views.empty()) continue;
     first_s = std::min(first_s, camera.views.front().time_s);
     last_s = std::max(last_s, camera.views.back().time_s);
   }
   const double apart_s = session.options.initialisation->time_offset_search_s;
-  for (const ImuData& imu : pass.imus) {
-    const double begin_s = secondsSince(pass.start_ns, imu.samples.front().time_ns),
-                 end_s = secondsSince(pass.start_ns, imu.samples.back().time_ns);
+  for (const ImuData& imu : detections.imus) {
+    const double begin_s = secondsSince(detections.start_ns, imu.samples.front().time_ns),
+                 end_s = secondsSince(detections.start_ns, imu.samples.back().time_ns);
     if (begin_s > last_s + apart_s || end_s < first_s - apart_s)
       throw badInput(imu.name,
                      fmt::format("its samples cover {:.3f} to {:.3f} s, but the detections {:.3f} to {:.3f} "

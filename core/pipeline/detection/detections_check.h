@@ -4,7 +4,7 @@
 
 #include "core/base/progress.h"
 #include "core/base/yaml_node.h"
-#include "core/pipeline/pass/recording_pass.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/session/session.h"
 
 #include <filesystem>
@@ -29,7 +29,7 @@ Resolution checkedResolution(const YamlNode& map, const SessionCamera& camera);
 CameraIntrinsics checkedLens(const YamlNode& map, const SessionCamera& camera);
 
 // Checks that IMU samples overlap the detections in time; otherwise they are of another recording.
-void checkOverlap(const Session& session, const DetectionResult& pass);
+void checkOverlap(const Session& session, const DetectionResult& detections);
 
 // Options that affect the detection and differ from their defaults.
 std::vector<OptionRow> detectionOptions(const Session& session);
