@@ -9,8 +9,8 @@
 
 namespace evical {
 
-// Standard output; write errors are recorded (lostOutput). Control characters except line breaks and tabs are printed
-// as escapes: names in files may have them, and would operate the terminal.
+// Standard output; write errors are recorded (lostOutput). Control characters except line breaks and tabs are
+// printed as escapes: names in files may have them, and would operate the terminal.
 void printText(std::string_view text);
 template <class... Arguments>
 void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {

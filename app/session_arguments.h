@@ -1,5 +1,5 @@
-// Arguments that commands share: SESSION -o DIR [--set group.option=value ...] [--threads N] [--quiet] of calibrate
-// and detect; RESULT.
+// Arguments that commands share: SESSION -o DIR [--set group.option=value ...] [--threads N] [--quiet] of
+// calibrate and detect; RESULT.
 #pragma once
 
 #include "core/pipeline/session/session.h"
@@ -29,7 +29,8 @@ void applySettings(const std::vector<std::string>& settings, Session& session);
 // The session with the settings applied.
 Session sessionFrom(const SessionArguments& arguments);
 
-// Result of a calibration or a truth, by its file or folder. Warns if the folder's run data do not belong to it.
+// Result of a calibration or a truth, by its file or folder. Warns if the folder's run data do not belong to
+// it.
 NamedResult resultAt(const std::string& path);
 void warnOfForeignRunData(const std::string& path);
 

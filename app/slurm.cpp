@@ -30,8 +30,8 @@ std::filesystem::path submittedOf(const std::filesystem::path& folder) {
 // Who reads a text of the script: sbatch the lines of #SBATCH, the shell the others.
 enum class ScriptReader { Sbatch, Shell };
 
-// A text of the script with its quotes. Control characters are refused: sbatch's lines end at a line break within quotes, too, and
-// the shell would run the rest.
+// A text of the script with its quotes. Control characters are refused: sbatch's lines end at a line break
+// within quotes, too, and the shell would run the rest.
 std::string inScript(ScriptReader reader, const std::string& text) {
   requirePlain(text, "--slurm", "a path or a name");
   if (reader == ScriptReader::Shell) return shellWord(text);

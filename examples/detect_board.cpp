@@ -1,4 +1,5 @@
-// Detects the board in a session's recording and prints the position of its first circle: detect_board SESSION.
+// Detects the board in a session's recording and prints the position of its first circle: detect_board
+// SESSION.
 #include "core/base/error.h"
 #include "core/base/progress.h"
 #include "core/pipeline/detection/recording_pass.h"

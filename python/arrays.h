@@ -13,12 +13,12 @@ namespace evical::python {
 
 using Numbers = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
-// Numbers of any shape. Raises TypeError for what is none: times, complex numbers, None, masked values; `what`
-// names the argument and its unit.
+// Numbers of any shape. Raises TypeError for what is none: times, complex numbers, None, masked values;
+// `what` names the argument and its unit.
 Numbers numbersFrom(const pybind11::object& values, const std::string& what);
 
-// Points along the last axis, of any leading shape: (..., columns). Raises ValueError for another size; `what` names
-// the argument.
+// Points along the last axis, of any leading shape: (..., columns). Raises ValueError for another size;
+// `what` names the argument.
 Numbers pointsFrom(const pybind11::object& values, pybind11::ssize_t columns, const char* what);
 
 // The shape of `values` with its `dropped` trailing axes replaced by `last`.

@@ -9,8 +9,8 @@
 
 namespace evical::python {
 
-// Texts of files and paths need not be UTF-8: in messages, other bytes are replaced by U+FFFD. Names keep them, like
-// os.fsdecode, since they are given back: to select a stream, for example.
+// Texts of files and paths need not be UTF-8: in messages, other bytes are replaced by U+FFFD. Names keep
+// them, like os.fsdecode, since they are given back: to select a stream, for example.
 pybind11::str textOf(std::string_view bytes);
 pybind11::list textsOf(const std::vector<std::string>& texts);
 pybind11::str identifierOf(std::string_view bytes);
@@ -21,8 +21,8 @@ std::string bytesOf(const pybind11::str& identifier);
 
 [[noreturn]] void throwBadState(const char* type);
 
-// Calls `restore` with a pickled state of `size` members. Throws CalibrationError (BadInput) for others, so that
-// a state that nobody made cannot make an object whose use crashes.
+// Calls `restore` with a pickled state of `size` members. Throws CalibrationError (BadInput) for others, so
+// that a state that nobody made cannot make an object whose use crashes.
 template <class Restore>
 auto restored(const pybind11::tuple& state, std::size_t size, const char* type, const Restore& restore)
     -> decltype(restore(state)) {

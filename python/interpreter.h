@@ -1,5 +1,5 @@
-// The interpreter's lock, its end and its forks. A daemon thread that waits for the lock when the interpreter ends
-// would be unwound through C++ by Python, which aborts the process. It stays where it is instead.
+// The interpreter's lock, its end and its forks. A daemon thread that waits for the lock when the interpreter
+// ends would be unwound through C++ by Python, which aborts the process. It stays where it is instead.
 #pragma once
 
 #include <pybind11/pybind11.h>

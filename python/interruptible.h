@@ -41,9 +41,10 @@ class RunLog final : public ProgressSink {
   Stopwatch since_start_;
 };
 
-// Calls `work` in a thread and waits for its end. Meanwhile it calls progress(stage, fraction) in the caller's thread
-// and sends log lines to Python's logger "evical". If a signal handler or `progress` raises, work is asked to stop and
-// is waited for, and that exception is thrown; else the one that work throws. Call with the interpreter's lock.
+// Calls `work` in a thread and waits for its end. Meanwhile it calls progress(stage, fraction) in the
+// caller's thread and sends log lines to Python's logger "evical". If a signal handler or `progress` raises,
+// work is asked to stop and is waited for, and that exception is thrown; else the one that work throws. Call
+// with the interpreter's lock.
 void runInterruptibly(const pybind11::object& progress, RunLog& log,
                       const std::function<void(const RunContext&)>& work);
 

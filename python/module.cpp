@@ -12,8 +12,8 @@ namespace {
   throw py::type_error("an object of evical was made by __new__ alone: it has no content");
 }
 
-// pybind11 gives an object that was never initialised memory without content. And its base class aborts if it is
-// copied with the pickle protocols 0 and 1, which make an instance of it: protocol 2 takes their place.
+// pybind11 gives an object that was never initialised memory without content. And its base class aborts if it
+// is copied with the pickle protocols 0 and 1, which make an instance of it: protocol 2 takes their place.
 void secure(const py::object& type, const py::object& reduce) {
   py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(type.ptr()))->operator_new = refuseEmpty;
   type.attr("__reduce_ex__") = py::cpp_function(

@@ -20,24 +20,24 @@ std::filesystem::path pathForReading(const std::filesystem::path& path);
 
 class OpenRecording {
  public:
-  // `streams`: names, or "events", "imu", "frames", "points"; absent: all of these types that can be read. Throws
-  // CalibrationError (BadInput).
+  // `streams`: names, or "events", "imu", "frames", "points"; absent: all of these types that can be read.
+  // Throws CalibrationError (BadInput).
   OpenRecording(std::filesystem::path path, const std::optional<std::vector<std::string>>& streams);
   ~OpenRecording();
 
   // A forked child has the parent's position in the file, and its connection to a separate reader: using them
-  // would take the parent's data. There, read(), streams(), faults() and fractionRead() throw CalibrationError
-  // (BadInput).
+  // would take the parent's data. There, read(), streams(), faults() and fractionRead() throw
+  // CalibrationError (BadInput).
   bool isOfOtherProcess() const;
 
-  // Null at the end; absent if another thread does not end its turn within `longest`. Throws Closed. Call without
-  // the interpreter's lock: threads take turns here.
+  // Null at the end; absent if another thread does not end its turn within `longest`. Throws Closed. Call
+  // without the interpreter's lock: threads take turns here.
   struct Closed {};
   std::optional<std::shared_ptr<Packet>> read(std::chrono::milliseconds longest);
   bool close(std::chrono::milliseconds longest);  // false: as above
 
-  // These do not wait for a thread that reads, but return the values at the end of an earlier turn. After close(),
-  // they return the last ones.
+  // These do not wait for a thread that reads, but return the values at the end of an earlier turn. After
+  // close(), they return the last ones.
   bool closed() const;
   std::vector<StreamInfo> streams() const;
   StreamInfo stream(std::size_t index) const { return streams().at(index); }

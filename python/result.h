@@ -27,8 +27,8 @@ struct Result {
 // The result of a run that has just ended; keeps its numbers, not its observations.
 std::shared_ptr<const Result> resultOf(const Session& session, const CalibrationRun& run);
 
-// From a result folder, its result.yaml, or a separate file like that. result.yaml is the truth: run.data is used
-// only if it belongs to it. Throws CalibrationError (BadInput).
+// From a result folder, its result.yaml, or a separate file like that. result.yaml is the truth: run.data is
+// used only if it belongs to it. Throws CalibrationError (BadInput).
 std::shared_ptr<const Result> loadResult(const std::filesystem::path& path);
 
 // Pickled form of a result: result.yaml, and the numbers that it does not contain.

@@ -47,8 +47,8 @@ py::object optionsOf(const Session& session) {
   return readOnly(options);
 }
 
-// A value that is refused leaves the session unchanged. The session's sensors stay where they are, since Python has
-// references to them.
+// A value that is refused leaves the session unchanged. The session's sensors stay where they are, since
+// Python has references to them.
 void setKey(Session& session, const std::string& key, const py::object& value) {
   const std::string text = py::isinstance<py::bool_>(value) ? (value.cast<bool>() ? "true" : "false")
                                                             : py::str(value).cast<std::string>();

@@ -46,16 +46,17 @@ struct FileMove {
 void moveFilesWhole(std::span<const FileMove> moves);
 
 // Removes temporary files of this file that killed runs have left: "NAME.part.XXXXXX", files or folders
-// without a change for an hour. "NAME.former.XXXXXX", which was being replaced, stays if the file itself is missing.
+// without a change for an hour. "NAME.former.XXXXXX", which was being replaced, stays if the file itself is
+// missing.
 void removeLitterOf(const std::filesystem::path& path);
 
 // Creates the folder and its parents; throws CalibrationError (BadInput) if it cannot be created or written
 // to.
 void makeOutputFolder(const std::filesystem::path& folder);
 
-// A result folder may be a stranger's. Symbolic links to folders in it are replaced by folders, as linked files are by files:
-// following them would overwrite files elsewhere. Removes those on the way to output / below, and returns them (from: what the
-// link names).
+// A result folder may be a stranger's. Symbolic links to folders in it are replaced by folders, as linked
+// files are by files: following them would overwrite files elsewhere. Removes those on the way to output /
+// below, and returns them (from: what the link names).
 std::vector<FileMove> removeLinksWithin(const std::filesystem::path& output,
                                         const std::filesystem::path& below);
 

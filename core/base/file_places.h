@@ -24,7 +24,8 @@ inline bool pathExists(const std::filesystem::path& path) {
   return std::filesystem::exists(path, ignored);
 }
 
-// Content of a file, or its first bytes; empty if it cannot be read. A pipe or device has none: opening it could wait forever.
+// Content of a file, or its first bytes; empty if it cannot be read. A pipe or device has none: opening it
+// could wait forever.
 std::string contentOfFile(const std::filesystem::path& file,
                           std::uintmax_t max_bytes = std::numeric_limits<std::uintmax_t>::max());
 

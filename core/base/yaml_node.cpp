@@ -81,7 +81,8 @@ bool hasTab(const std::string& text, int line) {
   return false;
 }
 
-// yaml-cpp needs half a kilobyte and some microseconds for each value. Each one has a sign before or after it.
+// yaml-cpp needs half a kilobyte and some microseconds for each value. Each one has a sign before or after
+// it.
 void requireFewValues(const std::string& text, const std::string& file) {
   constexpr std::ptrdiff_t kMax = 200'000;  // a correlation of 400 numbers has fewer
   const auto values =
@@ -91,8 +92,8 @@ void requireFewValues(const std::string& text, const std::string& file) {
                    "Check that it is the right file");
 }
 
-// Tags of YAML itself, and those that programs add to them ("!!opencv-matrix"). Others ask the reader for an action, such as
-// to include another file.
+// Tags of YAML itself, and those that programs add to them ("!!opencv-matrix"). Others ask the reader for an
+// action, such as to include another file.
 void requirePlain(const YAML::Node& node, const std::string& place) {
   const std::string& tag = node.Tag();
   if (tag.empty() || tag == "?" || tag == "!" || tag.starts_with("tag:yaml.org,2002:")) return;

@@ -28,7 +28,8 @@ class YamlNode {
   bool isNull() const;
   bool isQuoted() const;  // a value in quotes, which is a text even if it looks like a number
 
-  // Maps. All throw if this is not a map, or if a key occurs twice; keys() also if one has a control character.
+  // Maps. All throw if this is not a map, or if a key occurs twice; keys() also if one has a control
+  // character.
   std::vector<std::string> keys() const;
   void allowOnly(std::initializer_list<const char*> known) const;
   void allowOnly(const std::vector<std::string>& known) const;

@@ -49,7 +49,8 @@ constexpr std::int64_t kStampError_ns =
     2'000;                                 // of a multiple of a step: times since 1970 in double precision
 constexpr std::size_t kFewestStamps = 50;  // that show a step
 constexpr std::size_t kFewestBetween = 3;  // intervals that no number of lost samples explains
-// Longer and shorter intervals at nearly equal distances are a beat between two rates; losses come at any distance.
+// Longer and shorter intervals at nearly equal distances are a beat between two rates; losses come at any
+// distance.
 constexpr std::size_t kFewestRegular = 8;
 
 bool isMultiple(std::int64_t interval_ns, std::int64_t step_ns) {
@@ -76,7 +77,8 @@ struct Intervals {
   }
 };
 
-// The largest step of which recurring intervals are multiples: Euclid's algorithm with a tolerance. 0 if it is fine.
+// The largest step of which recurring intervals are multiples: Euclid's algorithm with a tolerance. 0 if it
+// is fine.
 std::int64_t gridOf(const Intervals& intervals, const StampOptions& options) {
   if (intervals.recurring.empty()) return 0;
   const double finest_ns = 1e6 * options.finest_step_ms;
@@ -129,7 +131,8 @@ bool haveBeat(const Intervals& intervals, const StampOptions& options) {
   return variance < options.beat_scatter * options.beat_scatter * mean * mean;
 }
 
-// Equal stamps in a row that no longer interval next to them makes up for: more samples than a steady rate has.
+// Equal stamps in a row that no longer interval next to them makes up for: more samples than a steady rate
+// has.
 std::size_t samplesTooMany(const Intervals& intervals) {
   const Times& all = intervals.all;
   const auto isLonger = [&](std::size_t i) {
@@ -217,8 +220,8 @@ std::vector<double> sampleNumbers(const Times& times_ns, const StampSteps& steps
   return numbers;
 }
 
-// Adds samples that are lost without a gap in the stamps: from there on, all are later by a period. Means of some steps before
-// and after average the rounding.
+// Adds samples that are lost without a gap in the stamps: from there on, all are later by a period. Means of
+// some steps before and after average the rounding.
 void addLost(const Times& times_ns, std::int64_t step_ns, double min_loss, std::vector<double>& numbers) {
   constexpr double kFewest = 16.0, kMin = 1.5, kNoise_medians = 6.0;
   const std::size_t size = times_ns.size();
@@ -258,7 +261,8 @@ void addLost(const Times& times_ns, std::int64_t step_ns, double min_loss, std::
   }
 }
 
-// Mean of the stamps next to an end of the recording, moved to it at the mean rate: more exact than one stamp.
+// Mean of the stamps next to an end of the recording, moved to it at the mean rate: more exact than one
+// stamp.
 double endOf(const Times& times_ns, const std::vector<double>& numbers, bool last, double step_ns) {
   constexpr double kSteps = 10.0;
   const double rate_ns = static_cast<double>(times_ns.back() - times_ns.front()) / numbers.back();
@@ -391,7 +395,8 @@ void leaveOutSecondClocks(const std::string& stream, std::int64_t first_ns, std:
                   samples.begin() + static_cast<std::ptrdiff_t>(clock->end));
 }
 
-// Samples of a log that was written twice: equal stamps have equal values, too. With coarse stamps most values differ.
+// Samples of a log that was written twice: equal stamps have equal values, too. With coarse stamps most
+// values differ.
 void leaveOutCopies(const std::string& stream, std::vector<ImuSample>& samples,
                     std::vector<RecordingFault>& faults, const StampOptions& options) {
   constexpr double kWorthSaying = 0.01;

@@ -1,4 +1,5 @@
-// Reflection of a camera's image by its driver or by a mirror in front of it, and its reversal. Two reflections are a rotation by 180 degrees, which needs no reversal.
+// Reflection of a camera's image by its driver or by a mirror in front of it, and its reversal. Two
+// reflections are a rotation by 180 degrees, which needs no reversal.
 #pragma once
 
 #include "core/geometry/resolution.h"

@@ -50,8 +50,8 @@ inline bool isWrongInput(const QualityWarning& reason) {
   return std::ranges::find(kNames, std::string_view(reason.name)) != kNames.end();
 }
 
-// Units that explain numbers which are `times` too large within `tolerance` (relative): "deg/s", or several joined by "or".
-// Empty if there is none.
+// Units that explain numbers which are `times` too large within `tolerance` (relative): "deg/s", or several
+// joined by "or". Empty if there is none.
 struct LikelyUnit {
   std::string words;
   std::string setting;  // of the first, as a session has it: "0.001 g"

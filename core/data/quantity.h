@@ -474,7 +474,8 @@ constexpr void forEachQuantity(const Rows& rows, Visitor&& visit) {
   std::apply([&](const auto&... row) { (visit(row), ...); }, rows);
 }
 
-// The kinds of sensors: their key in files, their rows, and where a rig, its state or its uncertainty has them.
+// The kinds of sensors: their key in files, their rows, and where a rig, its state or its uncertainty has
+// them.
 struct CameraSensors {
   static constexpr const char* kKey = "cameras";
   static constexpr QuantityOwner kOwner = QuantityOwner::Camera;

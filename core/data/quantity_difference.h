@@ -29,8 +29,8 @@ struct Estimate {
 // `b`, or if its reference is different.
 std::vector<QuantityDifference> difference(const Estimate& a, const Estimate& b);
 
-// `b` for a comparison with `a`. If both have a single camera, or a single IMU, it is the same sensor: `b` gets
-// its name from `a`, and a note states it.
+// `b` for a comparison with `a`. If both have a single camera, or a single IMU, it is the same sensor: `b`
+// gets its name from `a`, and a note states it.
 struct MatchedEstimate {
   Estimate estimate;
   std::vector<std::string> notes;

@@ -136,7 +136,8 @@ void describe(const AlignmentFit& fit, const AlignmentState& state, RotationAlig
   out.misfit_rms_rad_s = std::sqrt(misfits / n);
 }
 
-// Sets the estimates and their covariance: scatter of blocks, plus remaining errors of depths and translation.
+// Sets the estimates and their covariance: scatter of blocks, plus remaining errors of depths and
+// translation.
 void take(const AlignmentState& state, const Eigen::Matrix4d& by_blocks, const EgomotionOptions& options,
           RotationAlignment& out) {
   out.imu_from_camera = Eigen::Quaterniond(state.imu_from_camera).normalized();

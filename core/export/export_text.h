@@ -12,8 +12,8 @@
 namespace evical {
 
 // Shortest text that reads back as the same number, always with a decimal point: YAML 1.1 reads 1e-05 as
-// a string, and OpenCV reads 0 as an integer. Throws as throwNotFinite: other programs' parsers differ in what they
-// accept as NaN or infinity.
+// a string, and OpenCV reads 0 as an integer. Throws as throwNotFinite: other programs' parsers differ in
+// what they accept as NaN or infinity.
 std::string real(double value);
 
 // Throws CalibrationError (BadInput).
@@ -34,9 +34,9 @@ std::string opencvMatrix(const char* key, const Eigen::MatrixXd& matrix, char dt
 // {rows, cols, data} as ROS and SVO write it, each line indented by `indent` blanks.
 std::string dataMatrix(const Eigen::MatrixXd& matrix, int indent);
 
-// The languages of exported files. These two functions write every comment, and every text that is not Evical's own: a sensor's
-// name or a reason may come from a stranger's file, and must not become code. Control characters become escapes
-// (plain_text.h): which of them end a line depends on the language.
+// The languages of exported files. These two functions write every comment, and every text that is not
+// Evical's own: a sensor's name or a reason may come from a stranger's file, and must not become code.
+// Control characters become escapes (plain_text.h): which of them end a line depends on the language.
 enum class Language { Yaml, Json, Xml, Shell, Python, Matlab, Text };
 
 // Each line as a comment; in Language::Text it has no mark. Lines end at '\n'. JSON has no comments.
@@ -56,7 +56,8 @@ Eigen::Vector3d rollPitchYaw(const Eigen::Matrix3d& rotation);
 // Keys from image_width to distortion_coefficients; plumb_bob has 5 coefficients, in some readers 4.
 std::string cameraInfoBody(const std::string& name, const CameraIntrinsics& camera, int radtan_coefficients);
 
-// A whole camera_info file. ROS supports pinhole models only: other lenses are refitted, and a comment states the error.
+// A whole camera_info file. ROS supports pinhole models only: other lenses are refitted, and a comment states
+// the error.
 std::string cameraInfoYaml(const std::string& name, const CameraIntrinsics& camera);
 
 }  // namespace evical

@@ -277,7 +277,8 @@ std::string checkTextOf(const ReadBackDifference& difference) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-// The file as lines, by the rules of all languages: YAML, Python and others know more ends of a line than '\n'.
+// The file as lines, by the rules of all languages: YAML, Python and others know more ends of a line than
+// '\n'.
 std::vector<std::string> linesOf(const std::string& content) {
   constexpr std::string_view kEnds[] = {"\n",   "\r",   "\v",       "\f",           "\x1c",
                                         "\x1d", "\x1e", "\xc2\x85", "\xe2\x80\xa8", "\xe2\x80\xa9"};
@@ -314,8 +315,8 @@ std::set<std::string> commentsIn(const std::filesystem::path& path, const std::s
   return comments;
 }
 
-// Comments have directions, signs and the verdict. Lines that someone added are accepted, characters that end a line only in
-// some languages are not.
+// Comments have directions, signs and the verdict. Lines that someone added are accepted, characters that end
+// a line only in some languages are not.
 std::vector<std::string> commentProblems(const NamedResult& result, const ExportTarget& target,
                                          const std::filesystem::path& folder) {
   std::vector<std::string> problems;

@@ -1,4 +1,5 @@
-// A result prepared for exporters: every sensor with all of its data, the reference IMU first. Texts are without control characters.
+// A result prepared for exporters: every sensor with all of its data, the reference IMU first. Texts are
+// without control characters.
 #pragma once
 
 #include "core/export/export_text.h"
@@ -13,7 +14,8 @@
 namespace evical {
 
 struct RigCamera {
-  // file_name: the name with letters, digits and -_. only, the first no hyphen: the same in all languages, and no option.
+  // file_name: the name with letters, digits and -_. only, the first no hyphen: the same in all languages,
+  // and no option.
   std::string name, file_name;
   std::string stream;
   CameraKind kind = CameraKind::Events;

@@ -193,7 +193,8 @@ Eigen::MatrixXd OpencvNode::rows(std::size_t rows, std::size_t cols) const {
   return matrixFrom(all, static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols));
 }
 
-// A matrix's elements, rounded as OpenCV does. Numbers that its type cannot hold are refused: OpenCV changes them.
+// A matrix's elements, rounded as OpenCV does. Numbers that its type cannot hold are refused: OpenCV changes
+// them.
 std::vector<double> OpencvNode::elements() const {
   for (const char* const key : {"rows", "cols", "dt", "data"})
     if (!has(key)) fail(fmt::format("is not a matrix for OpenCV: it has no {}", key));

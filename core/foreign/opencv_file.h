@@ -1,6 +1,6 @@
-// Files of OpenCV's FileStorage (YAML, JSON, XML), with the file and key in error messages. OpenCV's own parsers overwrite the
-// stack on some files, so only the structures of calibrations are read here. As in OpenCV, "20" is an int and "20.0" a real
-// number; a key that occurs twice, which OpenCV accepts, is refused.
+// Files of OpenCV's FileStorage (YAML, JSON, XML), with the file and key in error messages. OpenCV's own
+// parsers overwrite the stack on some files, so only the structures of calibrations are read here. As in
+// OpenCV, "20" is an int and "20.0" a real number; a key that occurs twice, which OpenCV accepts, is refused.
 #pragma once
 
 #include "core/foreign/read_calibration.h"
@@ -32,7 +32,8 @@ class OpencvNode {
   std::size_t size() const;                                        // of a list
   std::vector<double> numbers(std::size_t count) const;            // of a list
   Eigen::MatrixXd rows(std::size_t rows, std::size_t cols) const;  // of a list of lists
-  // An !!opencv-matrix; `types`: those of its elements that the program accepts, "f" for float and "d" for double.
+  // An !!opencv-matrix; `types`: those of its elements that the program accepts, "f" for float and "d" for
+  // double.
   Eigen::MatrixXd matrix(int rows, int cols, const std::string& types = "d") const;
   std::vector<double> matrixNumbers() const;  // row by row, for any shape
   Resolution resolution() const;              // of a list: width and height

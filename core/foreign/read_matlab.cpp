@@ -1,6 +1,6 @@
 // Source: MathWorks' documentation of cameraParameters, cameraIntrinsics and stereoParameters, and its
-// stereoParametersFromOpenCV.m (2021-2024): pixels from 1, rotations of row vectors. The numbers are those that the
-// function assigns to fields of rig; the rest of the function creates objects of them.
+// stereoParametersFromOpenCV.m (2021-2024): pixels from 1, rotations of row vectors. The numbers are those
+// that the function assigns to fields of rig; the rest of the function creates objects of them.
 #include "core/base/error.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"

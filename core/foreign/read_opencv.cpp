@@ -1,6 +1,6 @@
 // Source: opencv/opencv, samples/cpp/tutorial_code/calib3d/camera_calibration/camera_calibration.cpp and
-// samples/cpp/stereo_calib.cpp (at aa2dde3), and opencv/opencv_contrib, modules/ccalib/samples/omni_calibration.cpp:
-// matrices are read with >> cv::Mat.
+// samples/cpp/stereo_calib.cpp (at aa2dde3), and opencv/opencv_contrib,
+// modules/ccalib/samples/omni_calibration.cpp: matrices are read with >> cv::Mat.
 #include "core/base/error.h"
 #include "core/base/file_places.h"
 #include "core/foreign/opencv_file.h"

@@ -1,6 +1,6 @@
 // Source: rpng/open_vins: ov_core/src/utils/opencv_yaml_parse.h (at 14211e2: YamlParser) and
-// ov_msckf/src/core/VioManagerOptions.h (at 051f60c: print_and_load_noise, print_and_load_state). It parses with OpenCV
-// and continues without missing keys, so that a missing key is as bad as a wrong one.
+// ov_msckf/src/core/VioManagerOptions.h (at 051f60c: print_and_load_noise, print_and_load_state). It parses
+// with OpenCV and continues without missing keys, so that a missing key is as bad as a wrong one.
 #include "core/foreign/opencv_file.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"

@@ -1,7 +1,8 @@
 // Source: uzh-rpg/rpg_svo_pro_open: vikit/vikit_cameras/src/ncamera_yaml_serialization.cpp and
-// camera_yaml_serialization.cpp (at 372ab39), and imu_handler.cpp (loadCalibrationFromFile, loadInitializationFromFile);
-// uzh-rpg/rpg_ultimate_slam_open: common/ze_cameras/src/camera_yaml_serialization.cpp and camera_rig.cpp (at cf674f5),
-// flags of vio_ceres_backend_interface.cpp, frontend_base.cpp and data_provider_factory.cpp. Both read the same rig.
+// camera_yaml_serialization.cpp (at 372ab39), and imu_handler.cpp (loadCalibrationFromFile,
+// loadInitializationFromFile); uzh-rpg/rpg_ultimate_slam_open:
+// common/ze_cameras/src/camera_yaml_serialization.cpp and camera_rig.cpp (at cf674f5), flags of
+// vio_ceres_backend_interface.cpp, frontend_base.cpp and data_provider_factory.cpp. Both read the same rig.
 #include "core/base/error.h"
 #include "core/foreign/read_numbers.h"
 #include "core/foreign/readers.h"

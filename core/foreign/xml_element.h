@@ -1,5 +1,5 @@
-// The part of XML that robot descriptions and OpenCV's files need: elements, their attributes, text and comments. A document
-// type, which may name other files and define entities, is refused.
+// The part of XML that robot descriptions and OpenCV's files need: elements, their attributes, text and
+// comments. A document type, which may name other files and define entities, is refused.
 #pragma once
 
 #include <filesystem>

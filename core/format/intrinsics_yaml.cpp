@@ -108,8 +108,8 @@ CameraIntrinsics readKalibrSphere(const YamlNode& map, CameraModel model) {
   return kalibrLens(map["intrinsics"], model, 2);
 }
 
-// Also reads cameras of EuRoC and Kimera, whose keys differ from Kalibr's in two names. Other keys (T_cam_imu, rostopic, ...)
-// are ignored.
+// Also reads cameras of EuRoC and Kimera, whose keys differ from Kalibr's in two names. Other keys
+// (T_cam_imu, rostopic, ...) are ignored.
 CameraIntrinsics readKalibr(const YamlNode& map) {
   const std::size_t kind = map["camera_model"].choice({"pinhole", "ds", "eucm", "omni"});
   CameraIntrinsics camera =
@@ -125,8 +125,8 @@ YamlNode numbersOf(const YamlNode& node) {
   return node.isMap() ? node["data"] : node;
 }
 
-// OpenCV's order: k1 k2 p1 p2 k3, and the rational model's k4 k5 k6, thin prism and tilt, which must be zero here; or the
-// four of a fisheye lens, which an OAK fills up with zeros.
+// OpenCV's order: k1 k2 p1 p2 k3, and the rational model's k4 k5 k6, thin prism and tilt, which must be zero
+// here; or the four of a fisheye lens, which an OAK fills up with zeros.
 void setOpenCvDistortion(const YamlNode& node, CameraIntrinsics& camera) {
   const std::vector<double> all = node.reals();
   const auto used = static_cast<std::size_t>(coefficientCount(camera.model));
@@ -147,7 +147,8 @@ void setMatrix(std::span<const double> matrix, const std::string& place, CameraI
   camera.principal_point_px = {cx, cy};
 }
 
-// ROS names it distortion_model, older files camera_model; files without a name have OpenCV's five coefficients.
+// ROS names it distortion_model, older files camera_model; files without a name have OpenCV's five
+// coefficients.
 CameraModel rosModel(const YamlNode& map, const YamlNode& distortion) {
   const auto name = map.has("distortion_model") ? map.find("distortion_model") : map.find("camera_model");
   if (!name) {
@@ -198,7 +199,8 @@ CameraIntrinsics readCameraInfo(const YamlNode& map) {
   return camera;
 }
 
-// A camera of a Luxonis OAK. Source: luxonis/depthai-shared, include/depthai-shared/common/CameraModel.hpp: the types.
+// A camera of a Luxonis OAK. Source: luxonis/depthai-shared, include/depthai-shared/common/CameraModel.hpp:
+// the types.
 CameraIntrinsics readOak(const YamlNode& map) {
   constexpr const char* kTypes[] = {"Perspective", "Fisheye", "Equirectangular", "RadialDivision"};
   const auto type = map.find("cameraType");
@@ -407,8 +409,8 @@ CameraIntrinsics readIntrinsics(const YamlNode& map) {
 
 namespace {
 
-// Follows rays from the optical axis towards a place on the image's border: how much the lens magnifies there must change
-// little. Real lenses are far within these limits, also badly calibrated ones.
+// Follows rays from the optical axis towards a place on the image's border: how much the lens magnifies there
+// must change little. Real lenses are far within these limits, also badly calibrated ones.
 void refuseImplausibleDistortion(const CameraIntrinsics& camera, const Eigen::Vector2d& border_px,
                                  const std::string& place) {
   constexpr double kStep_rad = 0.01, kWidest_rad = 1.4, kWeakest = 0.1, kStrongest = 4.0, kMaxOfTheWay = 0.6;

@@ -21,20 +21,20 @@ namespace evical {
 // map it is unknown. Throws CalibrationError (BadInput); a lens of another program must also be plausible.
 CameraIntrinsics readIntrinsics(const YamlNode& map);
 
-// Throws CalibrationError (BadInput) if a lens of another program cannot be right: values outside of the model's range,
-// another unit, or those of another image size. Its resolution may be unknown.
+// Throws CalibrationError (BadInput) if a lens of another program cannot be right: values outside of the
+// model's range, another unit, or those of another image size. Its resolution may be unknown.
 void validateImported(const CameraIntrinsics& camera, const std::string& place);
 
-// fx, fy, cx and cy of a camera matrix, given row by row. Throws CalibrationError (BadInput) if it has a skew, is
-// transposed or scaled.
+// fx, fy, cx and cy of a camera matrix, given row by row. Throws CalibrationError (BadInput) if it has a
+// skew, is transposed or scaled.
 std::array<double, 4> cameraMatrixNumbers(std::span<const double> matrix, const std::string& place);
 
-// Names of the cameras of a Kalibr camchain, cam0, cam1, ...; empty for other files. Throws if the root is a camera itself and
-// has others below it, since the line of the first one is missing then.
+// Names of the cameras of a Kalibr camchain, cam0, cam1, ...; empty for other files. Throws if the root is a
+// camera itself and has others below it, since the line of the first one is missing then.
 std::vector<std::string> camchainCameras(const YamlNode& root);
 
-// The cameras of an OAK's calibration by their sockets, cam0, cam1, ..., without those that were not calibrated;
-// empty for other files.
+// The cameras of an OAK's calibration by their sockets, cam0, cam1, ..., without those that were not
+// calibrated; empty for other files.
 std::vector<std::pair<std::string, YamlNode>> oakCameras(const YamlNode& root);
 
 // True if a file's root has the keys of one of the layouts above, except camchains and results.

@@ -10,7 +10,8 @@
 
 namespace evical {
 
-// Contents of .npy files. A matrix is float64 of two dimensions, rows by columns; a list has one, a number none.
+// Contents of .npy files. A matrix is float64 of two dimensions, rows by columns; a list has one, a number
+// none.
 std::string npyMatrix(const Eigen::MatrixXd& matrix);
 std::string npyList(std::span<const double> numbers);
 std::string npyList(std::span<const std::int64_t> numbers);

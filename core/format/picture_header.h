@@ -22,7 +22,8 @@ std::optional<Resolution> claimedPictureSize(std::string_view bytes);
 // Plausible size in the header: unknown if it is 0 or more than 65536 per side.
 Resolution pictureSize(std::string_view bytes);
 
-// The parts of a PNG that its pixels need: texts and profiles can claim, or unpack to, gigabytes. Empty if a part is cut off.
+// The parts of a PNG that its pixels need: texts and profiles can claim, or unpack to, gigabytes. Empty if a
+// part is cut off.
 std::vector<std::uint8_t> pngPixels(std::string_view png);
 
 // Times that a JPEG's pixels are refined; each one takes as long as decoding a picture.

@@ -20,8 +20,8 @@ struct GrayImage {
 // `place` if a picture is truncated, damaged, too large, or differs from the frame's specified size.
 GrayImage decodeFrame(const Frame& frame, const std::string& place);
 
-// Replaces the frame's content by its brightness, so that decodeFrame only copies it. A frame that cannot be decoded
-// stays unchanged.
+// Replaces the frame's content by its brightness, so that decodeFrame only copies it. A frame that cannot be
+// decoded stays unchanged.
 void decodeAhead(Frame& frame);
 
 // Encoding of a frame as a picture file.

@@ -227,8 +227,8 @@ class TagGridFinder : public PatternFinder {
   }
 
   // True if the tags can be placed on the board. The first picture that leaves only one layout decides.
-  // Others, of one row of tags for example, are placed in Kalibr's if it is possible, also if no layout agrees
-  // because tags are tiny or bent by the lens.
+  // Others, of one row of tags for example, are placed in Kalibr's if it is possible, also if no layout
+  // agrees because tags are tiny or bent by the lens.
   bool findLayout(const std::vector<SeenTag>& tags) {
     if (layout_found_) return true;
     constexpr int kEnough = 3;

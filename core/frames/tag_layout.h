@@ -42,7 +42,8 @@ int squareOf(const Board& board, TagOrder order, int tag);
 TagCorners rotatedCorners(const TagCorners& square, int quarter_turns);
 
 // Share of pairs of neighbouring tags whose image agrees with their places on the board, which are given in
-// the order of the tags, up to an error relative to the distance. Lens distortion hardly affects it. 1 for a single tag.
+// the order of the tags, up to an error relative to the distance. Lens distortion hardly affects it. 1 for a
+// single tag.
 double agreementOfNeighbours(const std::vector<SeenTag>& tags, const std::vector<TagCorners>& places_m,
                              double largest_error);
 

@@ -32,8 +32,8 @@ Line columnOf(const BoardScene& scene, int col) {
   return line;
 }
 
-// Column before the first or after the last one. Asymmetric boards end with a straight one of every second row: turned by half
-// a turn, a larger board has only these circles beyond a part of it.
+// Column before the first or after the last one. Asymmetric boards end with a straight one of every second
+// row: turned by half a turn, a larger board has only these circles beyond a part of it.
 Line columnBeyond(const BoardScene& scene, bool first) {
   const Board& board = scene.board;
   if (board.type != BoardType::AsymmetricCircles) return columnOf(scene, first ? -1 : board.cols);
@@ -114,14 +114,16 @@ class ExtentJudge {
     return motion;
   }
 
-  // Sigma per axis of a circle's place by the board's fit, whose errors are larger than those of the circles beyond the board.
+  // Sigma per axis of a circle's place by the board's fit, whose errors are larger than those of the circles
+  // beyond the board.
   double placeSigma_px(const Eigen::Vector2d& pixel) const {
     const PlaneFlowBasis basis = trace_.motion->frame.basis(pixel);
     const double fit = (basis * fit_.solve(basis.transpose())).trace();
     return centre_sigma_px_ * std::sqrt(1.0 + 0.5 * fit);
   }
 
-  // Circles that are where the board's lattice continues, and of the size of its circles, as precisely as its own ones.
+  // Circles that are where the board's lattice continues, and of the size of its circles, as precisely as its
+  // own ones.
   int alike(const Line& line, const BoardMotion& motion) const {
     const double sigmas = options_.extent.alike_sigmas;
     int count = 0;
@@ -149,8 +151,8 @@ class ExtentJudge {
     return seen <= (1.0 - options_.extent.min_line) * 0.5 * expected ? LineState::Absent : LineState::Unclear;
   }
 
-  // Discs of the background are on one line by chance now and then. So most of the line must be in view, and there must be
-  // three circles of it, if it has as many.
+  // Discs of the background are on one line by chance now and then. So most of the line must be in view, and
+  // there must be three circles of it, if it has as many.
   LineState beyond(const Line& line) const {
     const BoardMotion motion = motionOf(line);
     const ExtentOptions& extent = options_.extent;

@@ -25,8 +25,9 @@ struct BoardPlacement {
 // A board that is given too large has hundreds of placements on the same circles.
 inline constexpr std::size_t kMaxPlacements = 48;
 
-// Placements with nearly the largest number of circles on the board, in descending order. If the camera is known, at
-// most kMaxPlacements, and only those that a camera can see: two equal, perpendicular axes behind the homography.
+// Placements with nearly the largest number of circles on the board, in descending order. If the camera is
+// known, at most kMaxPlacements, and only those that a camera can see: two equal, perpendicular axes behind
+// the homography.
 std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
                                          const std::vector<MovingCircle>& circles, const BoardScene& scene,
                                          std::int64_t time_ns, const GridOptions& options);

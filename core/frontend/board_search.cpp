@@ -55,7 +55,8 @@ std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& 
   return Judged{*motion, measured, std::max(expected - measured, 0)};
 }
 
-// Placements on the same circles: the first one, and the motions of the board's plane from each of them to it.
+// Placements on the same circles: the first one, and the motions of the board's plane from each of them to
+// it.
 struct PlacementGroup {
   const BoardPlacement* first = nullptr;
   std::vector<Eigen::Matrix3d> shifts = {Eigen::Matrix3d::Identity()};

@@ -139,7 +139,8 @@ class BurstExtractor {
 // or of slow biases. Bursts are behind their edge by the pixel's delay times the edge's speed. Of a circle's
 // leading and trailing edges one brightens and one darkens, so circles seem to grow or to shrink in
 // proportion to their speed:
-//   radius offset = r0 + s (d_brightening - d_darkening) / 2 * speed,  s = 1 for dark circles, -1 for bright ones.
+//   radius offset = r0 + s (d_brightening - d_darkening) / 2 * speed,  s = 1 for dark circles, -1 for bright
+//   ones.
 // docs/maths.md, 10.1.
 
 class PolarityDelayFit {

@@ -75,7 +75,8 @@ Eigen::Vector2d normalisedAt(const CameraIntrinsics& camera, const Eigen::Vector
   return (ideal_pixel - camera.principal_point_px).cwiseQuotient(idealFocalLength_px(camera));
 }
 
-// x and y are exchanged: the principal point is far from the image's centre, and would be near it in the other order.
+// x and y are exchanged: the principal point is far from the image's centre, and would be near it in the
+// other order.
 bool hasExchangedPrincipalPoint(const CameraIntrinsics& camera) {
   constexpr double kFar = 0.1, kNear = 0.25;  // of the image's longer side; of the distance as given
   const Eigen::Vector2d size_px(camera.resolution_px.width_px, camera.resolution_px.height_px);

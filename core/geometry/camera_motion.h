@@ -1,4 +1,5 @@
-// A camera's pose on a trajectory, from the control points of a few successive segments, with its derivatives.
+// A camera's pose on a trajectory, from the control points of a few successive segments, with its
+// derivatives.
 #pragma once
 
 #include "core/geometry/so3.h"
@@ -51,8 +52,8 @@ class CameraMotion {
            imu_from_camera_.transpose() * rotation_.angular_velocity_rad_s.cross(camera_in_imu_);
   }
 
-  // Derivatives of the pose: of a turn about the camera's axes, then of a shift along them. Columns: control points, and the
-  // camera's rotation and translation in the IMU's frame if they are free.
+  // Derivatives of the pose: of a turn about the camera's axes, then of a shift along them. Columns: control
+  // points, and the camera's rotation and translation in the IMU's frame if they are free.
   template <class Matrix>
   void writeDerivatives(bool free_rotation, bool free_translation, Matrix&& by) const {
     by.setZero();

@@ -1,4 +1,5 @@
-// Times between which the derivatives of poses on a trajectory are interpolated, for measurements within a short while.
+// Times between which the derivatives of poses on a trajectory are interpolated, for measurements within a
+// short while.
 #pragma once
 
 #include "core/numerics/angles.h"
@@ -9,9 +10,10 @@
 
 namespace evical {
 
-// Chebyshev's times; none if control points are the better columns. Weights of control points have slopes up to 2/3, second
-// derivatives up to 2 and third ones up to 3, in knots. With a half the length, 2/3 a, 2 a^2 / 4 and 3 a^3 / 24 remain after one,
-// two and three times. The limits leave less than 1e-3, also where the errors of several control points add up.
+// Chebyshev's times; none if control points are the better columns. Weights of control points have slopes up
+// to 2/3, second derivatives up to 2 and third ones up to 3, in knots. With a half the length, 2/3 a, 2 a^2 /
+// 4 and 3 a^3 / 24 remain after one, two and three times. The limits leave less than 1e-3, also where the
+// errors of several control points add up.
 struct PoseTimes {
   static constexpr std::size_t kMax = 3;
   // Longest views with one, two and three times.

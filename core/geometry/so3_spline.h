@@ -65,7 +65,8 @@ class So3Segment {
              double knot_spacing_s, bool with_jacobians);
   So3Segment(const So3Spline& spline, int segment, bool with_jacobians);
 
-  // `u` in [0, 1): place in the segment. `jacobians` only if built with them; fields beyond `order` are unchanged.
+  // `u` in [0, 1): place in the segment. `jacobians` only if built with them; fields beyond `order` are
+  // unchanged.
   void evaluate(double u, RotationOrder order, RotationSample& sample,
                 RotationJacobians* jacobians = nullptr) const;
 

@@ -139,7 +139,8 @@ InitialisationOptions widest(const std::vector<CameraPose>& poses, const GyroRot
   return wide;
 }
 
-// The offset at which rates agree, however far apart the clocks are: searched around that of the recordings' middles.
+// The offset at which rates agree, however far apart the clocks are: searched around that of the recordings'
+// middles.
 std::optional<double> offsetOfClocks(const std::vector<CameraPose>& poses, const GyroRotation& gyro,
                                      const InitialisationOptions& options) {
   SensorPrior middles;

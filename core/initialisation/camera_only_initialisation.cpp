@@ -237,7 +237,8 @@ std::ptrdiff_t viewsBetween(const std::vector<MovingPose>& poses, double begin_s
          std::lower_bound(poses.begin(), poses.end(), begin_s, earlier);
 }
 
-// In order of time on the reference's clock, each change from the views of one camera to those of the other is a gap.
+// In order of time on the reference's clock, each change from the views of one camera to those of the other
+// is a gap.
 Bridges bridges(const std::vector<MovingPose>& reference_views, const std::vector<MovingPose>& camera_views,
                 double time_offset_s, double longest_s) {
   constexpr std::size_t kMax = 400;  // limit for cameras that overlap: the first are sufficient

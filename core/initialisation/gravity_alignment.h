@@ -43,8 +43,8 @@ struct GravityAlignment {
   double board_scale = 1.0, board_scale_std = 0.0;
 };
 
-// Sign of the board's scale; negative for mirrored images and for negated accelerations (docs/maths.md, 8.13),
-// 0 if it is not clear.
+// Sign of the board's scale; negative for mirrored images and for negated accelerations
+// (docs/maths.md, 8.13), 0 if it is not clear.
 int signOfScale(const GravityAlignment& gravity, const InitialisationOptions& options);
 
 // `rotation` (world_from_imu, IMU clock) determines range and knots.

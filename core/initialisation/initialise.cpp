@@ -72,8 +72,8 @@ void turnAboutAxis(const CalibrationInput& input, const InitialisationOptions& o
   }
 }
 
-// Knot spacing of both splines: that of the sensor that needs the closest knots. Separate spacings would save control
-// points of one spline, but widen the band of the normal equations, so that nothing is gained.
+// Knot spacing of both splines: that of the sensor that needs the closest knots. Separate spacings would save
+// control points of one spline, but widen the band of the normal equations, so that nothing is gained.
 double commonKnotSpacing_s(const CalibrationInput& input, const InitialisationOptions& options,
                            const std::vector<AlignedCamera>& cameras, TimeRange range,
                            const GyroRotation& reference, Initialisation& result) {
@@ -123,8 +123,9 @@ void checkBoardScale(const GravityAlignment& gravity, const Board& board,
   result.warnings.push_back(result.doubt);
 }
 
-// Board scale and misfit of the accelerations if the scale is far from 1: positions from views are scaled until it no
-// longer changes, since their noise would bias it. False if it does not settle: something else is wrong.
+// Board scale and misfit of the accelerations if the scale is far from 1: positions from views are scaled
+// until it no longer changes, since their noise would bias it. False if it does not settle: something else is
+// wrong.
 bool refineBoardScale(std::vector<CameraTrack> tracks, const CalibrationInput& input,
                       const So3Spline& rotation, const InitialisationOptions& options,
                       const RunContext& context, GravityAlignment& gravity) {

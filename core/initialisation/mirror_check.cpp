@@ -194,7 +194,8 @@ std::string keyWords(Mirroring reversal) {
   return std::string("mirrored: ") + kMirroringNames[static_cast<std::size_t>(reversal)];
 }
 
-// Which mirroring it is only a mount or another camera on the chip shows; any other leads to another camera frame.
+// Which mirroring it is only a mount or another camera on the chip shows; any other leads to another camera
+// frame.
 CalibrationError mirroredImage(const CalibrationInput& input, const StatedSigns& stated,
                                const AlignedCamera& camera, const std::optional<Mirroring>& how,
                                const std::string& reason) {

@@ -40,16 +40,16 @@ struct MirrorError : CalibrationError {
 
 // The error of accelerations that have the opposite sign of what cameras see: a mirrored image, negated
 // accelerations, or one of both, if nothing distinguishes them; with a repair only if nothing else explains
-// the data. `gyro` without its bias; `negated`: those of the world's board together show the opposite sign. Empty if no
-// camera shows it.
+// the data. `gyro` without its bias; `negated`: those of the world's board together show the opposite sign.
+// Empty if no camera shows it.
 std::optional<CalibrationError> findMirror(const CalibrationInput& input, const StatedSigns& stated,
                                            std::span<const AlignedCamera> cameras, const GyroRotation& gyro,
                                            bool negated, const InitialisationOptions& options,
                                            const RunContext& context);
 
 // True if `camera` sees the board that `first` sees as if from behind: the image of one of them is mirrored.
-// `gyro`: rotation of the rig, known between views that are `max_gap_s` apart. False if it rotates about one axis
-// only, which leaves the angles about it free, or if the cameras see the board too far apart in time.
+// `gyro`: rotation of the rig, known between views that are `max_gap_s` apart. False if it rotates about one
+// axis only, which leaves the angles about it free, or if the cameras see the board too far apart in time.
 bool contradictsHandedness(const AlignedCamera& first, const AlignedCamera& camera, const GyroRotation& gyro,
                            double max_gap_s, const InitialisationOptions& options);
 
@@ -61,9 +61,9 @@ CalibrationError mirroredOfTwo(const CalibrationInput& input, const StatedSigns&
 void checkGivenRotation(const CalibrationInput& input, const StatedSigns& stated, const AlignedCamera& camera,
                         const GyroRotation& gyro, const InitialisationOptions& options);
 
-// Doubt about a state whose accelerations agree: the session inverts them, or it reverses an image that their sign does
-// not confirm (`forces_confirm`), and nothing else shows that images are not mirrored; or a prior shows that they
-// are. May be empty.
+// Doubt about a state whose accelerations agree: the session inverts them, or it reverses an image that their
+// sign does not confirm (`forces_confirm`), and nothing else shows that images are not mirrored; or a prior
+// shows that they are. May be empty.
 std::string mirrorDoubt(const CalibrationInput& input, const StatedSigns& stated,
                         std::span<const AlignedCamera> cameras, const CalibrationState& state,
                         bool forces_confirm);

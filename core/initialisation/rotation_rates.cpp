@@ -75,8 +75,8 @@ RotationRates rotationRates(const CameraData& camera, const Board& board, const 
   return rates;
 }
 
-// The ratio of medians leads to a first scale, with which search and alignment work as usual. Rotations along the
-// gyroscope's refine it: the noise of views, which makes rates seem larger, averages out in them.
+// The ratio of medians leads to a first scale, with which search and alignment work as usual. Rotations along
+// the gyroscope's refine it: the noise of views, which makes rates seem larger, averages out in them.
 std::optional<RateRatio> rateRatio(const CameraData& camera, const Board& board, const ImuData& imu,
                                    std::int64_t start_ns, const InitialisationOptions& options,
                                    const RunContext& context) {

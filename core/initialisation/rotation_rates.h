@@ -29,8 +29,9 @@ RotationRates rotationRates(const CameraData& camera, const Board& board, const 
                             const ImuData& imu, const ImuState& imu_state, std::int64_t start_ns,
                             const InitialisationOptions& options, const RunContext& context);
 
-// Ratio of the gyroscope's rates to the camera's, and the correlation at the time offset where they agree best. Empty
-// if they agree at none. A ratio far from 1 shows a wrong unit, or a lens with a wrong focal length.
+// Ratio of the gyroscope's rates to the camera's, and the correlation at the time offset where they agree
+// best. Empty if they agree at none. A ratio far from 1 shows a wrong unit, or a lens with a wrong focal
+// length.
 struct RateRatio {
   double ratio = 1.0, correlation = 0.0;
 };

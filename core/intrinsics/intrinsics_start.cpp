@@ -47,7 +47,8 @@ std::optional<CameraIntrinsics> byOpenCv(const std::vector<SensorView>& views, R
   try {
     cv::Mat matrix, distortion;
     std::vector<cv::Mat> rotations, translations;
-    // LU: with the default, a singular value decomposition, the tests of wide lenses took three times as long.
+    // LU: with the default, a singular value decomposition, the tests of wide lenses took three times as
+    // long.
     cv::calibrateCamera(on_board, pixels, {resolution_px.width_px, resolution_px.height_px}, matrix,
                         distortion, rotations, translations,
                         cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K3 | cv::CALIB_USE_LU);

@@ -21,8 +21,8 @@ CameraIntrinsics sameLens(const CameraIntrinsics& camera, CameraModel model);
 CameraIntrinsics otherSide(const CameraIntrinsics& sphere);
 
 // Starts of the optimisation, at least one: the front end's lens and, if that is missing or a guess, OpenCV's
-// calibration of centres as points. For all models except radial-tangential, lenses with fields of view from 100 to
-// 200 degrees are added, and the two with the smallest errors remain.
+// calibration of centres as points. For all models except radial-tangential, lenses with fields of view from
+// 100 to 200 degrees are added, and the two with the smallest errors remain.
 std::vector<CameraIntrinsics> intrinsicsStarts(const std::vector<SensorView>& views, const Board& board,
                                                CameraModel model, Resolution resolution_px,
                                                const std::optional<CameraIntrinsics>& detection_intrinsics);

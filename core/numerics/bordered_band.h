@@ -40,8 +40,8 @@ class BorderedBand {
 
   Eigen::VectorXd diagonal() const;
 
-  // x with (this + diag(added)) x = right; empty if that matrix is not positive definite. Overwrites `factor`, whose memory
-  // several solutions share.
+  // x with (this + diag(added)) x = right; empty if that matrix is not positive definite. Overwrites
+  // `factor`, whose memory several solutions share.
   std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& added, const Eigen::VectorXd& right,
                                        BandCholesky& factor) const;
 

@@ -29,9 +29,9 @@ class TautString {
   }
 
  private:
-  // Each side is the shortest line from the last bend around that side's ends of gates. If the other side is in
-  // the way of a straight line to the new end, the string bends there. `sign`: 1 for upper ends, which such a
-  // line passes below.
+  // Each side is the shortest line from the last bend around that side's ends of gates. If the other side is
+  // in the way of a straight line to the new end, the string bends there. `sign`: 1 for upper ends, which
+  // such a line passes below.
   void addTo(std::deque<LinePoint>& own, std::deque<LinePoint>& other, const LinePoint& end, double sign) {
     while (own.size() > 1 && sign * (slope(own[own.size() - 2], own.back()) - slope(own.back(), end)) >= 0.0)
       own.pop_back();

@@ -299,8 +299,8 @@ void Batch::holdStillAxes() {
     weights_.held_axes[imu] = stillAxes(input_, state, weights_, imu);
 }
 
-// Solves until convergence with weights that follow from the residuals. Weights need no converged residuals, so that
-// only the last solution converges.
+// Solves until convergence with weights that follow from the residuals. Weights need no converged residuals,
+// so that only the last solution converges.
 void Batch::solveLastStage() {
   const std::vector<ParameterStages> all = stages();
   const auto solve = [&](const SolverLimits& limits) {

@@ -35,18 +35,20 @@ struct BatchSolution {
 BatchSolution optimiseBatch(const CalibrationInput& input, const CalibrationState& initial,
                             const OptimisationOptions& options, const RunContext& context);
 
-// Solves only the last stage, with other options or slightly other data, from a solution; its iterations follow those before.
-// Not from a solution with wrong inputs: parameters that are freed may end in another optimum.
+// Solves only the last stage, with other options or slightly other data, from a solution; its iterations
+// follow those before. Not from a solution with wrong inputs: parameters that are freed may end in another
+// optimum.
 BatchSolution continueBatch(const CalibrationInput& input, const CalibrationState& solved,
                             std::vector<IterationRecord> before, const OptimisationOptions& options,
                             const RunContext& context);
 
-// Solves only the last stage, unobserved, from a state that is already a solution for these or similar data. Its weights are
-// determined once, at that state, so the solution has no fits, notes or errors of circles.
+// Solves only the last stage, unobserved, from a state that is already a solution for these or similar data.
+// Its weights are determined once, at that state, so the solution has no fits, notes or errors of circles.
 BatchSolution refineBatch(const CalibrationInput& input, const CalibrationState& solved,
                           const OptimisationOptions& options, const RunContext& context);
 
-// The same for a trial of other options: loosely solved, with scales at its solution, where residuals may be much smaller.
+// The same for a trial of other options: loosely solved, with scales at its solution, where residuals may be
+// much smaller.
 BatchSolution tryBatch(const CalibrationInput& input, const CalibrationState& solved,
                        const OptimisationOptions& options, const RunContext& context);
 

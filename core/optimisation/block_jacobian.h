@@ -36,7 +36,8 @@ class BlockJacobian {
 
   using Map = Eigen::Map<const ViewRows::RowMajorMatrix, 0, Eigen::OuterStride<>>;
 
-  // Rows in the block's own columns: those of its splines and border, or of poses that depend on the first of them.
+  // Rows in the block's own columns: those of its splines and border, or of poses that depend on the first of
+  // them.
   Map ownRows() const {
     return {rows_.values.data(), count_, rows_.stride - 1, Eigen::OuterStride<>(rows_.stride)};
   }

@@ -40,7 +40,8 @@ double nearestPoints_spacings(const Board& board) {
   return board.type == BoardType::AsymmetricCircles ? std::sqrt(2.0) : 1.0;
 }
 
-// Whitens the errors of one view for the displacement that these of its circles have in common, as the solution does.
+// Whitens the errors of one view for the displacement that these of its circles have in common, as the
+// solution does.
 void normalise(const FieldModes& modes, const std::vector<CircleMeasurement>& circles,
                const CircleFlags& common, std::span<CircleError> errors) {
   std::vector<DisplacementField::Circle> displaced;
@@ -91,7 +92,8 @@ std::vector<CircleMeasurement> appendErrors(const CalibrationInput& input, const
   return cost.circles();
 }
 
-// Appends the errors of a view. Circles that are used determine its displacement; null: those near the median error.
+// Appends the errors of a view. Circles that are used determine its displacement; null: those near the median
+// error.
 void appendView(const CalibrationInput& input, const CalibrationState& state,
                 const OptimisationOptions& options, double displacements, const CircleModel& model,
                 std::size_t camera, std::size_t view, const CircleSelection* used,

@@ -27,8 +27,8 @@ struct CircleError {
   bool inFront() const { return std::isfinite(normalised2); }
 };
 
-// All circles whose times are in both splines' range, in order of camera, view and list. `used`: those that determine the
-// displacement field of their view, as in the solution; null before a selection.
+// All circles whose times are in both splines' range, in order of camera, view and list. `used`: those that
+// determine the displacement field of their view, as in the solution; null before a selection.
 std::vector<CircleError> circleErrors(const CalibrationInput& input, const CalibrationState& state,
                                       const OptimisationOptions& options, const NoiseScales& scales,
                                       const CircleSelection* used = nullptr);

@@ -90,7 +90,8 @@ FieldModes fieldRoot(const Board& board, const ModelOptions& options) {
   return factor;
 }
 
-// The strongest eigenvectors of the kernel: two thirds of the modes that the factor needs for the same remainder.
+// The strongest eigenvectors of the kernel: two thirds of the modes that the factor needs for the same
+// remainder.
 FieldModes fieldModes(const Board& board, const ModelOptions& options) {
   const FieldModes factor = fieldRoot(board, options);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(factor.transpose() * factor);
@@ -145,8 +146,8 @@ void DisplacementField::whiten(double* matrix, Eigen::Index columns) const {
   }
 }
 
-// Motions that the trajectory could follow are removed from each view: shift, rotation, distance and tilt of the camera, as a
-// far board shows them.
+// Motions that the trajectory could follow are removed from each view: shift, rotation, distance and tilt of
+// the camera, as a far board shows them.
 void FieldSize::add(std::span<const Circle> view) {
   const auto n = static_cast<Eigen::Index>(view.size()), modes = root_.cols();
   if (n <= kMotions) return;
@@ -162,7 +163,8 @@ void FieldSize::add(std::span<const Circle> view) {
   addSeparated(others.bottomRows(2 * n - kMotions));
 }
 
-// `left`: columns of the modes, and the errors. Eigenvectors instead of tridiagonal products take five times as long.
+// `left`: columns of the modes, and the errors. Eigenvectors instead of tridiagonal products take five times
+// as long.
 void FieldSize::addSeparated(const Eigen::MatrixXd& left) {
   const auto field = left.leftCols(left.cols() - 1);
   const auto error = left.rightCols<1>();
@@ -173,8 +175,9 @@ void FieldSize::addSeparated(const Eigen::MatrixXd& left) {
   squares_ += error.squaredNorm();
 }
 
-// Twice the negative logarithm of the likelihood at the best scale of the circles' own sigmas, and of the prior.
-// A view's errors have the covariance I + size^2 M M^T; M^T M = Q T Q^T, so their square is e^T e - size^2 b^T (I + size^2 T)^-1 b.
+// Twice the negative logarithm of the likelihood at the best scale of the circles' own sigmas, and of the
+// prior. A view's errors have the covariance I + size^2 M M^T; M^T M = Q T Q^T, so their square is e^T e -
+// size^2 b^T (I + size^2 T)^-1 b.
 double FieldSize::misfit(double size) const {
   const double size2 = size * size;
   double sum = squares_, logs = 0.0;

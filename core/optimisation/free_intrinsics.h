@@ -2,8 +2,8 @@
 //
 // Measured centres stay in the ideal pixels of the front end's camera model, in which covariances, leads and
 // pixel errors are given. The prediction of another model is compared on the sensor and converted:
-//   r = S [ project(camera, centre of the projected circle's conic) - distort(detection_intrinsics, measured) ],
-//   S = d(ideal pixel)/d(pixel) of detection_intrinsics at the measured centre.
+//   r = S [ project(camera, centre of the projected circle's conic) - distort(detection_intrinsics, measured)
+//   ], S = d(ideal pixel)/d(pixel) of detection_intrinsics at the measured centre.
 // If both models are equal, r is predicted - measured in ideal pixels, to second order in r.
 #pragma once
 

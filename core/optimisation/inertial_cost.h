@@ -2,9 +2,9 @@
 //   gyroscope      r = [ M_g R_ga w_j + b_g - measured ] / sigma,   w_j = R^T w(t)
 //   accelerometer  r = [ M_a f_j + b_a - measured ] / sigma,
 //                  f_j = R^T [ R_wb(t)^T (p''(t) - g) + (a(t)^ + w(t)^ w(t)^) l ]
-// with R, l = reference_from_imu and t = t_measured + time_offset + time_offset_drift (t_measured - t_0), less
-// the delay for the accelerometer. For the reference IMU R = 1, l = 0, offset 0, and the last blocks are absent.
-// One cost function holds all samples whose times fall into one spline segment.
+// with R, l = reference_from_imu and t = t_measured + time_offset + time_offset_drift (t_measured - t_0),
+// less the delay for the accelerometer. For the reference IMU R = 1, l = 0, offset 0, and the last blocks are
+// absent. One cost function holds all samples whose times fall into one spline segment.
 //
 // Blocks of the gyroscope: 4 rotation control points (x y z w), bias [rad/s], mapping, R_ga (gyroscope
 // from accelerometer, x y z w); further IMUs: rotation (x y z w), time offset [s]. Blocks of the

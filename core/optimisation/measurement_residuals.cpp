@@ -17,8 +17,8 @@
 namespace evical {
 namespace {
 
-// Circles of one cost function from the first of these on: the view, or rows of a rolling shutter with common pose times,
-// since nothing connects the errors of different rows.
+// Circles of one cost function from the first of these on: the view, or rows of a rolling shutter with common
+// pose times, since nothing connects the errors of different rows.
 std::size_t countOfPart(const ProblemBuilder& builder, CameraKind kind,
                         std::span<const TimedCircle> circles) {
   if (kind == CameraKind::Events) return circles.size();

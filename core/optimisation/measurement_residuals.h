@@ -1,5 +1,5 @@
-// Residual blocks of the measurements of cameras and IMUs. Each measurement belongs to the spline segment at its time with
-// the current time offsets.
+// Residual blocks of the measurements of cameras and IMUs. Each measurement belongs to the spline segment at
+// its time with the current time offsets.
 #pragma once
 
 #include "core/optimisation/problem_builder.h"

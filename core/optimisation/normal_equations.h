@@ -45,7 +45,8 @@ class PartialSums {
         corner_(BorderedBand::RowMajorMatrix::Zero(border(), border())),
         border_gradient_(Eigen::VectorXd::Zero(border())) {}
 
-  // J^T J and J^T r of one block, in its own columns: splines, border, residuals; the lower triangle, row by row.
+  // J^T J and J^T r of one block, in its own columns: splines, border, residuals; the lower triangle, row by
+  // row.
   void add(const std::vector<Eigen::Index>& spline_columns, const std::vector<Eigen::Index>& border_columns,
            const double* products);
 

@@ -1,6 +1,6 @@
-// Smoothness of a trajectory without an IMU: weak costs that determine stretches without views, and the acceleration that its
-// views show, which is expected between them. A cost is zero for constant velocity, r = acceleration / sigma with the
-// acceleration from three neighbouring control points, without unit.
+// Smoothness of a trajectory without an IMU: weak costs that determine stretches without views, and the
+// acceleration that its views show, which is expected between them. A cost is zero for constant velocity, r =
+// acceleration / sigma with the acceleration from three neighbouring control points, without unit.
 #pragma once
 
 #include "core/data/calibration_setup.h"

@@ -1,5 +1,5 @@
-// Circles of a view as the batch sees them: their measurements, and the blocks of their cost function. The solution, its
-// weights and its residuals use the same ones.
+// Circles of a view as the batch sees them: their measurements, and the blocks of their cost function. The
+// solution, its weights and its residuals use the same ones.
 #pragma once
 
 #include "core/optimisation/optimisation_options.h"
@@ -45,7 +45,8 @@ CircleMeasurement measurementOf(const CalibrationInput& input, const Calibration
 // All segments between these times.
 SegmentTimes segmentsBetween(const CalibrationState& state, double first_s, double last_s);
 
-// Blocks of a ViewCost, without intrinsics. `sensor`: the camera with the blocks of quantities that cameras share.
+// Blocks of a ViewCost, without intrinsics. `sensor`: the camera with the blocks of quantities that cameras
+// share.
 template <class State>
 auto blocksOfView(State& state, const SegmentTimes& segments, std::size_t camera, std::size_t sensor,
                   std::size_t board) {

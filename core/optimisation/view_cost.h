@@ -1,15 +1,16 @@
-// Cost of the measured ellipse centres of one view: two residuals for each circle (docs/maths.md, 9.1; eKalibr-Inertial,
-// arXiv 2509.05923). Corners are circles of radius 0.
+// Cost of the measured ellipse centres of one view: two residuals for each circle (docs/maths.md, 9.1;
+// eKalibr-Inertial, arXiv 2509.05923). Corners are circles of radius 0.
 //
 //   r_i = L_i^-1 [ centre(camera_from_world(t_i), circle i) + lead_i - measured_i ]
 //   t_i = t_measured + time_offset + time_offset_drift (t_measured - t_0) + line_delay (row - middle row)
 //         + exposure_share (exposure - mean exposure)
 //   camera_from_world(t) = (world_from_imu(t) reference_from_camera)^-1
 //
-// L_i is the Cholesky factor of the centre's covariance in ideal pixels; lead_i is the edge localisation bias along the image motion
-// (edge_localisation_bias.h), from the measured velocity, so that it is linear in its parameters. The residuals of the view are
-// whitened for the displacement field of its circles (displacement_field.h). Then each circle's residual is shortened, so that
-// its square is Huber's loss. With free intrinsics, the prediction is that of free_intrinsics.h.
+// L_i is the Cholesky factor of the centre's covariance in ideal pixels; lead_i is the edge localisation bias
+// along the image motion (edge_localisation_bias.h), from the measured velocity, so that it is linear in its
+// parameters. The residuals of the view are whitened for the displacement field of its circles
+// (displacement_field.h). Then each circle's residual is shortened, so that its square is Huber's loss. With
+// free intrinsics, the prediction is that of free_intrinsics.h.
 //
 // Parameter blocks, in this order; quaternions are x y z w, with the tangent space of so3_manifold.h:
 //   size  unit  parameter
@@ -31,11 +32,13 @@
 //   4     -     world_from_board, rotation
 //   3     m     world_from_board, translation
 //   9     -     fx fy cx cy [px], d0 ... d4, if intrinsics are free
-// Bending moves the circles. Their radius and the plane's normal stay, since the change of the centres by these is negligible.
+// Bending moves the circles. Their radius and the plane's normal stay, since the change of the centres by
+// these is negligible.
 //
-// Control points and the camera's pose in the rig move the circles only through the camera's pose at their times. So the
-// derivatives are by that pose at one to three times (core/geometry/pose_times.h), and the products of all circles go to the
-// control points at once (docs/maths.md, 9.15). Longer views have derivatives by control points.
+// Control points and the camera's pose in the rig move the circles only through the camera's pose at their
+// times. So the derivatives are by that pose at one to three times (core/geometry/pose_times.h), and the
+// products of all circles go to the control points at once (docs/maths.md, 9.15). Longer views have
+// derivatives by control points.
 #pragma once
 
 #include "core/data/calibration_state.h"
@@ -54,8 +57,8 @@
 
 namespace evical {
 
-// One measured circle. Its time is on the camera's clock; the next three numbers are the derivatives of the time on the
-// reference's clock by the drift, the line delay and the share of the exposure.
+// One measured circle. Its time is on the camera's clock; the next three numbers are the derivatives of the
+// time on the reference's clock by the drift, the line delay and the share of the exposure.
 struct CircleMeasurement {
   double time_s = 0.0;
   double by_drift_s = 0.0;       // per ppm
@@ -80,15 +83,15 @@ struct CircleModel {
   bool free_intrinsics = false;
 };
 
-// Two rows for each circle, in columns of the tangent space: the camera's poses at some times, or the control points and the
-// camera's pose in the rig; the view's other free blocks; and the residual.
+// Two rows for each circle, in columns of the tangent space: the camera's poses at some times, or the control
+// points and the camera's pose in the rig; the view's other free blocks; and the residual.
 struct ViewRows {
   using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   Eigen::Index stride = 0, poses = 0;  // poses: columns of the poses, or of control points and camera
   std::vector<double> values;          // row-major; at least as many as needed
-  // Derivatives of the poses at the times by control points, and by the camera's pose if it is free; empty if rows have
-  // these columns.
+  // Derivatives of the poses at the times by control points, and by the camera's pose if it is free; empty if
+  // rows have these columns.
   RowMajorMatrix chain;
 };
 
@@ -101,7 +104,8 @@ class ViewCost final : public ceres::CostFunction {
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
 
-  // `widths`: columns of each block after the control points, 0 if it is fixed. Without any, rows are residuals only.
+  // `widths`: columns of each block after the control points, 0 if it is fixed. Without any, rows are
+  // residuals only.
   void evaluate(double const* const* parameters, std::span<const int> widths, ViewRows& rows) const;
   // Errors before the displacement field is removed: two for each circle, infinite behind the camera.
   std::vector<double> errorsInSigmas(double const* const* parameters) const;

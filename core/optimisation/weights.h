@@ -10,8 +10,8 @@
 
 namespace evical {
 
-// Axes of an IMU about which a recording contains no rotation, only noise: translations along them, and a gyroscope's
-// rotation relative to its accelerometer, are undetermined.
+// Axes of an IMU about which a recording contains no rotation, only noise: translations along them, and a
+// gyroscope's rotation relative to its accelerometer, are undetermined.
 
 struct CalibrationInput;
 struct CalibrationState;

@@ -35,8 +35,8 @@ inline constexpr double kEpoch_ns = 1e17;
 // Fractions are seconds; whole numbers us, or ns if us give an implausible time or event rate.
 std::int64_t guessTimeUnit_ns(const ColumnNumbers& time, std::size_t rows);
 
-// True if times of records that look like Evical's own (t, x, y and a bool p, from Python) are ns, as these are:
-// whole, at a rate of events that a sensor can have.
+// True if times of records that look like Evical's own (t, x, y and a bool p, from Python) are ns, as these
+// are: whole, at a rate of events that a sensor can have.
 bool areOwnTimes_ns(const ColumnNumbers& time, std::size_t rows);
 
 // True for a brighter polarity: 1; false for 0 and -1. nullopt for others, which may be triggers.

@@ -176,7 +176,8 @@ std::string takeBrackets(std::string& text) {
   return unit;
 }
 
-// "ax" and "accx" become "a x" and "acc x"; so do "xacc" and "xgyro", as autopilots write them. "ax0" becomes "0 a x".
+// "ax" and "accx" become "a x" and "acc x"; so do "xacc" and "xgyro", as autopilots write them. "ax0" becomes
+// "0 a x".
 void splitAxes(Words& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     std::string word = words[i];

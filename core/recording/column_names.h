@@ -51,8 +51,8 @@ struct ScaledUnit {
 // Sensor that a file's name names: "Gyroscope.csv". nullopt if none or both.
 std::optional<MeasuredBy> sensorNamed(std::string_view name);
 
-// "m/s^2", "g", "mg" and other spellings; "rad/s", "deg/s", "dps", "mdps"; also a number of these, "0.000488 g". nullopt for
-// others.
+// "m/s^2", "g", "mg" and other spellings; "rad/s", "deg/s", "dps", "mdps"; also a number of these, "0.000488
+// g". nullopt for others.
 std::optional<ScaledUnit<AccelerationUnit>> accelerationUnitOf(std::string_view unit);
 std::optional<ScaledUnit<AngularRateUnit>> angularRateUnitOf(std::string_view unit);
 

@@ -39,7 +39,8 @@ void summarise(const std::vector<RawImuSample>& samples, const std::vector<ImuSa
     summary.backward_steps += interval_ns < 0 ? 1 : 0;
     summary.largest_gap_ns = std::max(summary.largest_gap_ns, interval_ns);
   }
-  // A driver marks the covariance as unknown by the number that means: without this sensor. Then no other stream has it.
+  // A driver marks the covariance as unknown by the number that means: without this sensor. Then no other
+  // stream has it.
   const bool whole = alone && 2 * std::min(rates, forces) > samples.size();
   if (whole && summary.without_rate == samples.size()) summary.without_rate = 0;
   if (whole && summary.without_force == samples.size()) summary.without_force = 0;

@@ -58,8 +58,8 @@ struct Inspection {
   std::vector<RecordingFault> faults;
 };
 
-// Reads to the end, including frames, which are not decoded; requires a fresh reader. Memory for events is eight
-// bytes per pixel; IMU samples are kept.
+// Reads to the end, including frames, which are not decoded; requires a fresh reader. Memory for events is
+// eight bytes per pixel; IMU samples are kept.
 Inspection inspectRecording(RecordingReader& reader, const InspectionOptions& options = {},
                             const RunContext& context = {});
 

@@ -173,7 +173,8 @@ std::unique_ptr<RecordingReader> withPictures(std::unique_ptr<RecordingReader> r
   return std::make_unique<JoinedReader>(std::move(parts));
 }
 
-// Pictures of cameras, with times: others next to a table may show anything. The reader of the text has its IMU.
+// Pictures of cameras, with times: others next to a table may show anything. The reader of the text has its
+// IMU.
 pictures::PictureFolder picturesBesideText(const std::filesystem::path& path) {
   pictures::PictureFolder found = pictures::findRpgPictures(path);
   if (found.lists.empty()) found = pictures::findPictures(path);

@@ -1,5 +1,6 @@
-// A recording with streams whose names have control characters (core/base/plain_text.h). No program writes such names; they
-// would operate terminals, and end lines in files. These streams are listed with visible names, and not read.
+// A recording with streams whose names have control characters (core/base/plain_text.h). No program writes
+// such names; they would operate terminals, and end lines in files. These streams are listed with visible
+// names, and not read.
 #pragma once
 
 #include "core/recording/recording_reader.h"

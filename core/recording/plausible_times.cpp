@@ -21,8 +21,8 @@ struct Rates {
 };
 constexpr double kSmallestSensor = 128.0 * 128.0;  // pixels; events may reach only some
 constexpr double kMinute_s = 60.0, kDay_s = 24.0 * 60.0 * kMinute_s;
-// Calm scenes give few events per pixel, and a read-out limits their number. Cameras exist up to some kHz, and people take
-// pictures by hand every minute. IMUs reach 32 kHz.
+// Calm scenes give few events per pixel, and a read-out limits their number. Cameras exist up to some kHz,
+// and people take pictures by hand every minute. IMUs reach 32 kHz.
 constexpr std::array<Rates, 4> kRates{{
     {StreamType::Events, "events", "event camera", 0.002, 1000.0, 0.02, 200.0, 1000, 0.005, 7.0 * kDay_s},
     {StreamType::Imu, "samples", "IMU", 0.5, 40'000.0, 20.0, 8000.0, 10, 0.0, 30.0 * kDay_s},

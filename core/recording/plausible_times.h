@@ -1,5 +1,6 @@
-// Rates and lengths that streams of recordings can have: one table for all readers. Times beyond it have another unit than
-// the reader assumes, or are not times. Used before any other conclusion, since all others depend on times.
+// Rates and lengths that streams of recordings can have: one table for all readers. Times beyond it have
+// another unit than the reader assumes, or are not times. Used before any other conclusion, since all others
+// depend on times.
 #pragma once
 
 #include "core/data/recording.h"
@@ -33,8 +34,8 @@ class SeenTimes {
   std::vector<double> intervals_s_;
 };
 
-// Why the times of a stream cannot be true, as a sentence with the unit that would make them true; absent if they are
-// plausible or too few to tell.
+// Why the times of a stream cannot be true, as a sentence with the unit that would make them true; absent if
+// they are plausible or too few to tell.
 std::optional<std::string> whyImplausible(StreamType type, const SeenTimes& seen);
 
 // True if a camera can take pictures at these times, or there is only one.

@@ -10,7 +10,8 @@
 
 namespace evical {
 
-// Counts events in windows of 10 ms. At its limit a read-out gives the same count in many windows; a scene does not.
+// Counts events in windows of 10 ms. At its limit a read-out gives the same count in many windows; a scene
+// does not.
 class ReadOutLoad {
  public:
   // Call in order of time.

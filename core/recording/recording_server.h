@@ -10,8 +10,8 @@
 
 namespace evical {
 
-// Call this first in main(). If the arguments ask for a server, it serves a recording and does not return. Otherwise it
-// registers this program as the server.
+// Call this first in main(). If the arguments ask for a server, it serves a recording and does not return.
+// Otherwise it registers this program as the server.
 void beRecordingServer(int argc, char** argv);
 
 // The command without the path of the recording; empty if there is none.

@@ -1,5 +1,5 @@
-// Joins a gyroscope and an accelerometer with separate samples to one IMU. RealSense, OAK and ZED publish them on two topics, or
-// alternate on one. Each sensor keeps its own samples and times.
+// Joins a gyroscope and an accelerometer with separate samples to one IMU. RealSense, OAK and ZED publish
+// them on two topics, or alternate on one. Each sensor keeps its own samples and times.
 #pragma once
 
 #include "core/recording/recording_reader.h"
@@ -18,8 +18,8 @@ struct SeparateImu {
 // The joined stream's name.
 std::string nameOf(const SeparateImu& imu);
 
-// The recording's streams, followed by the joined ones. Throws CalibrationError (BadInput) if a stream is missing or is not
-// of an IMU.
+// The recording's streams, followed by the joined ones. Throws CalibrationError (BadInput) if a stream is
+// missing or is not of an IMU.
 std::unique_ptr<RecordingReader> withSeparateImus(std::unique_ptr<RecordingReader> reader,
                                                   const std::vector<SeparateImu>& imus);
 

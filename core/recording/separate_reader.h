@@ -20,9 +20,9 @@ namespace evical {
 // The file descriptor of a server's socket.
 inline constexpr int kServerSocket = 3;
 
-// Ends waits of this thread for other processes when a stop is requested, while it exists: reads end as at the end of
-// the file, and opening throws Cancelled. Otherwise a process that hangs would delay the stop. A token without a source
-// changes nothing.
+// Ends waits of this thread for other processes when a stop is requested, while it exists: reads end as at
+// the end of the file, and opening throws Cancelled. Otherwise a process that hangs would delay the stop. A
+// token without a source changes nothing.
 class StopWaiting {
  public:
   explicit StopWaiting(std::stop_token stop);
@@ -43,8 +43,8 @@ class SeparateReader : public RecordingReader {
 
   // Calls `open` in a copy of this process; its exceptions are thrown here. `path`: for messages.
   SeparateReader(const std::filesystem::path& path, const Open& open);
-  // Starts `server`, a command that is given the path and, unless it is empty, `names`, and serves a reader at kServerSocket
-  // (recording_server.h).
+  // Starts `server`, a command that is given the path and, unless it is empty, `names`, and serves a reader
+  // at kServerSocket (recording_server.h).
   SeparateReader(const std::filesystem::path& path, const std::vector<std::string>& server,
                  const std::string& names = {});
   ~SeparateReader() override;

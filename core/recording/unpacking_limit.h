@@ -26,7 +26,8 @@ class UnpackingLimit {
     return std::max(kAlways_bytes, kTimes * packed_bytes);
   }
 
-  // Counts what was unpacked since the beginning. Throws CalibrationError (BadInput) if it is too much for the whole file.
+  // Counts what was unpacked since the beginning. Throws CalibrationError (BadInput) if it is too much for
+  // the whole file.
   void add(std::uint64_t bytes) {
     unpacked_bytes_ += bytes;
     if (unpacked_bytes_ <= max_bytes_) return;

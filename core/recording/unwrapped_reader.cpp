@@ -21,8 +21,8 @@ constexpr std::array<std::int64_t, 6> kRanges_ns = {
 // A wrap and a later item from before it, both out of order by at most this.
 constexpr std::int64_t kDisorder_ns = 10 * kMillisecond_ns;
 
-// Longest time from the last item before a wrap to the first one after it. A counter that starts anywhere, or has an offset,
-// is recognised by its step only, which must then be more exact, and not short.
+// Longest time from the last item before a wrap to the first one after it. A counter that starts anywhere, or
+// has an offset, is recognised by its step only, which must then be more exact, and not short.
 std::int64_t longest_ns(std::int64_t range_ns, std::int64_t last_ns, std::int64_t time_ns) {
   constexpr std::int64_t kShare = 100, kMin_ns = kSecond_ns / 4, kMax_ns = 60 * kSecond_ns;
   constexpr std::int64_t kExact_ns = kSecond_ns / 10, kLongRange_ns = 1000 * kSecond_ns;

@@ -1,6 +1,6 @@
-// Continues times of counters that wrap: a counter of microseconds in 32 bits does after 71.6 min. Readers of formats whose
-// counters have a known width do this themselves; tables and messages contain counters of any driver. States which
-// streams have times that cannot be true.
+// Continues times of counters that wrap: a counter of microseconds in 32 bits does after 71.6 min. Readers of
+// formats whose counters have a known width do this themselves; tables and messages contain counters of any
+// driver. States which streams have times that cannot be true.
 #pragma once
 
 #include "core/recording/plausible_times.h"

@@ -16,8 +16,9 @@ std::string trajectoryCsv(const CalibrationState& state);
 
 // The residuals of a result's circles as a table, with all digits.
 
-// One line for each circle: measured position as in the detections, residual of the prediction after all corrections,
-// sigmas, and whether the estimate uses it. `view` counts the camera's windows with the board in the detections.
+// One line for each circle: measured position as in the detections, residual of the prediction after all
+// corrections, sigmas, and whether the estimate uses it. `view` counts the camera's windows with the board in
+// the detections.
 void residualsCsv(const NamedResult& named, std::span<const CircleResidual> residuals, const TextSink& sink);
 
 // Drifting biases as comma-separated text: one line for each knot of each IMU. Biases are linear between

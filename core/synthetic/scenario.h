@@ -39,8 +39,9 @@ struct EventPixelModel {
   double vignetting = 0.0;       // loss of light in the image's corners, which are slower
   double threshold_noise = 0.0;  // sigma from event to event, relative
   double leak_rate_hz = 0.0;     // of ON events without changes of light
-  // Time after an event during which the pixel is in reset. The level at its end is the new reference, which therefore
-  // depends on the edge's speed. Real pixels: the refractory period. 0: reset only if a threshold is crossed again within it.
+  // Time after an event during which the pixel is in reset. The level at its end is the new reference, which
+  // therefore depends on the edge's speed. Real pixels: the refractory period. 0: reset only if a threshold
+  // is crossed again within it.
   double reset_s = 0.0;
   // Rate of the arbiter: events wait for their readout, and are stamped at it; those that would wait longer
   // are lost.

@@ -1,7 +1,8 @@
-// Measured circle centres against the truth of simulated recordings, along the motion: `evical_benchmarks centre_errors
-// [--seeds N] [--duration S] [--speeds] [--variant OPTION=VALUE,...]... SCENARIO...`. A recording is simulated
-// once, in memory; the front end runs over it with each variant of its options.
-// Error model of a centre: -d v + l e + q a + g (centre - its mean), for a delay d, an edge localisation bias l, an
+// Measured circle centres against the truth of simulated recordings, along the motion: `evical_benchmarks
+// centre_errors
+// [--seeds N] [--duration S] [--speeds] [--variant OPTION=VALUE,...]... SCENARIO...`. A recording is
+// simulated once, in memory; the front end runs over it with each variant of its options. Error model of a
+// centre: -d v + l e + q a + g (centre - its mean), for a delay d, an edge localisation bias l, an
 // acceleration error q, and a motion amplitude that is measured g too large; docs/maths.md, 9.1 defines e.
 // The batch estimates delay and lead, but takes q and g for motion. An acceleration error of a sinusoid
 // scales its amplitude by q w^2, so that q and g describe the same fault: each is fitted without the other.

@@ -63,8 +63,8 @@ ErrorFit fitErrors(const std::vector<CentreError>& errors, Third third) {
   return fit;
 }
 
-// Agreement of the errors of circles, over many recordings: by speed and distance on the board, and over time. Delay and lead
-// are removed.
+// Agreement of the errors of circles, over many recordings: by speed and distance on the board, and over
+// time. Delay and lead are removed.
 class ErrorAgreement {
  public:
   void add(const std::vector<CentreError>& errors, const ErrorFit& fit);

@@ -1,8 +1,10 @@
 // Random laboratories (laboratory_scenarios.h), calibrated with default options, against the truth:
-// `evical_benchmarks laboratories [--family NAME]... [--seeds N] [--skip N] [--exact] [--ideal PX] [--detections FOLDER]
-// [--variant OPTION=VALUE,...]... [--faults N]`. Sessions have the usual errors of board size and lens, unless --exact.
-// Fails if a calibration fails, if a wrong result is reported as ok, or if the errors over sigmas of 20 laboratories or more
-// leave 0.7 to 1.4. Errors of time offsets are without the pixels' delay, which the detected centres show.
+// `evical_benchmarks laboratories [--family NAME]... [--seeds N] [--skip N] [--exact] [--ideal PX]
+// [--detections FOLDER]
+// [--variant OPTION=VALUE,...]... [--faults N]`. Sessions have the usual errors of board size and lens,
+// unless --exact. Fails if a calibration fails, if a wrong result is reported as ok, or if the errors over
+// sigmas of 20 laboratories or more leave 0.7 to 1.4. Errors of time offsets are without the pixels' delay,
+// which the detected centres show.
 #include "core/numerics/angles.h"
 #include "core/numerics/robust.h"
 #include "core/pipeline/runs/run_data.h"
@@ -77,8 +79,8 @@ std::uint64_t detectorFingerprint() {
   return fingerprint;
 }
 
-// File of the detections that an earlier run has kept; empty if none are to be kept. Its name has everything on which
-// they depend.
+// File of the detections that an earlier run has kept; empty if none are to be kept. Its name has everything
+// on which they depend.
 std::filesystem::path fileOf(const Scenario& scenario, const Arguments& arguments) {
   if (arguments.detections.empty()) return {};
   static const std::uint64_t detector = detectorFingerprint();

@@ -14,7 +14,8 @@
 namespace evical::benchmarks {
 namespace {
 
-// Draws follow each other in braces or in separate statements: the order of function arguments depends on the compiler.
+// Draws follow each other in braces or in separate statements: the order of function arguments depends on the
+// compiler.
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : random_(seed) {}

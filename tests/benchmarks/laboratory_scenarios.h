@@ -1,5 +1,5 @@
-// Random laboratories: rigs, boards, lenses, light, pixels and motions that are drawn for each number, in families that
-// have something in common.
+// Random laboratories: rigs, boards, lenses, light, pixels and motions that are drawn for each number, in
+// families that have something in common.
 #pragma once
 
 #include "core/synthetic/scenario.h"
@@ -9,7 +9,8 @@
 
 namespace evical::benchmarks {
 
-// Usual: everything as drawn. Memory: pixels with a refractory period of 1 ms. Clutter: discs around the board.
+// Usual: everything as drawn. Memory: pixels with a refractory period of 1 ms. Clutter: discs around the
+// board.
 enum class LaboratoryFamily { Usual, Calm, Brisk, Dim, Memory, Clutter };
 inline constexpr std::array<std::string_view, 6> kLaboratoryFamilies = {"usual", "calm",   "brisk",
                                                                         "dim",   "memory", "clutter"};

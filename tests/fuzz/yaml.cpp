@@ -1,5 +1,5 @@
-// Readers of text files, all with the same bytes: sessions, intrinsics, imports of other programs' files, results,
-// scenarios with their boards.
+// Readers of text files, all with the same bytes: sessions, intrinsics, imports of other programs' files,
+// results, scenarios with their boards.
 #include "core/base/error.h"
 #include "core/format/intrinsics_yaml.h"
 #include "core/pipeline/session/import_session.h"

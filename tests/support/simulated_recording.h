@@ -13,7 +13,8 @@ namespace evical::test {
 std::filesystem::path simulatedOnce(const std::string& name,
                                     const std::function<void(const std::filesystem::path& folder)>& make);
 
-// The first seconds of a scenario of config/scenarios. recording.bag and truth.yaml are in the same folder as the session.
+// The first seconds of a scenario of config/scenarios. recording.bag and truth.yaml are in the same folder as
+// the session.
 std::filesystem::path simulatedRecording(const std::string& scenario, double duration_s);
 
 }  // namespace evical::test

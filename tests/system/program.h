@@ -34,7 +34,8 @@ Outcome runProgramWithFileLimit(const QStringList& arguments, int blocks_of_1024
 Outcome interruptProgram(const QStringList& arguments, int signal,
                          const std::function<bool(const QString&)>& ready, int patience_s = 60);
 
-// Folders of the simulated recordings: "blinking", "intrinsics", "mistakes", "second" (the short one's rig), "short" (text), "short_bag", "still".
+// Folders of the simulated recordings: "blinking", "intrinsics", "mistakes", "second" (the short one's rig),
+// "short" (text), "short_bag", "still".
 QString simulated(const QString& name);
 
 // The path of one of the project's own files, relative to its root.

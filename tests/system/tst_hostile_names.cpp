@@ -1,5 +1,5 @@
-// Files of strangers, and odd surroundings: names that operate the terminal, the shell or a spreadsheet, or that lead out of the
-// output folder; full disks and missing folders.
+// Files of strangers, and odd surroundings: names that operate the terminal, the shell or a spreadsheet, or
+// that lead out of the output folder; full disks and missing folders.
 #include "tests/support/test_program.h"
 #include "tests/system/program.h"
 #include "tests/system/session_case.h"

@@ -1,5 +1,5 @@
-// Typical mistakes of users, one per row, on one right recording: the first reason names the cause with its value and the
-// advice removes it. No row of a wrong input advises to record again, which would not help.
+// Typical mistakes of users, one per row, on one right recording: the first reason names the cause with its
+// value and the advice removes it. No row of a wrong input advises to record again, which would not help.
 #include "tests/system/session_case.h"
 
 using namespace evical::test;

@@ -131,8 +131,8 @@ class TestMainWindowWindows : public QObject {
     QVERIFY(test.window.close());
   }
 
-  // Windows belong to the document: each calibration excludes them, also one that detects the board again, and
-  // of sensors with other names.
+  // Windows belong to the document: each calibration excludes them, also one that detects the board again,
+  // and of sensors with other names.
   void rejectedWindows_areExcludedByEveryCalibration() {
     Story test(copyOfSimulatedSession(scratch_.path()));
     test.rejectRows(20, 22);

@@ -17,8 +17,8 @@ QString inFormWords(QString text);
 
 namespace evical::ui {
 
-// Its height does not depend on its width: if it did, QFormLayout of Qt 6.4 would write beyond its arrays when
-// a row is hidden. The role is one of the style sheet, or empty.
+// Its height does not depend on its width: if it did, QFormLayout of Qt 6.4 would write beyond its arrays
+// when a row is hidden. The role is one of the style sheet, or empty.
 class FormLabel final : public QLabel {
  public:
   FormLabel(const QString& text, const char* role, QWidget* parent) : QLabel(text, parent) {

@@ -15,8 +15,8 @@ inline QLabel* wrappedLabel(const QString& text, const char* role, QWidget* pare
   return label;
 }
 
-// One line, for names of files: they have no spaces where a text could wrap, so dots replace the middle of a long one.
-// Its owner sets the tool tip.
+// One line, for names of files: they have no spaces where a text could wrap, so dots replace the middle of a
+// long one. Its owner sets the tool tip.
 class ElidedLabel : public QLabel {
  public:
   ElidedLabel(const char* role, QWidget* parent) : QLabel(parent) { setProperty("role", role); }

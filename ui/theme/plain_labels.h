@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Labels and tool tips show text from files: names, reasons, paths. Qt's default would show a text with markup as rich text, and
-// open the files that it names.
+// Labels and tool tips show text from files: names, reasons, paths. Qt's default would show a text with
+// markup as rich text, and open the files that it names.
 #pragma once
 
 class QApplication;
@@ -8,8 +8,8 @@ class QWidget;
 
 namespace evical::ui {
 
-// Makes plain text the default of all labels and tool tips, also of Qt's own dialogs: a label has rich text only if its
-// format is set to that.
+// Makes plain text the default of all labels and tool tips, also of Qt's own dialogs: a label has rich text
+// only if its format is set to that.
 void showTextAsPlain(QApplication& application);
 
 // The tool tip of this widget is rich text of our own, with names escaped.

@@ -92,7 +92,8 @@ void MainWindow::makeCentre() {
   error_ = new ErrorPanel(this);
   exported_ = new ExportNotice(this);
   auto* const pages = new QWidget(this);
-  // The largest page would exceed small displays. An error takes its place from the page, not from the display.
+  // The largest page would exceed small displays. An error takes its place from the page, not from the
+  // display.
   pages->setMinimumSize(716, 396);
   auto* const column = new QVBoxLayout(pages);
   column->setContentsMargins(8, 8, 8, 8);

@@ -35,8 +35,8 @@ QString openFileOf(const CalibrationDocument& document);
 QString lastUsedFolder();  // folder of the last opened file
 
 enum class RecordingChoice { Recordings, RecordingsAndSessions };
-// Asks for recordings, which are files or folders (of pictures, text or a ROS 2 bag): a button of the dialog chooses the
-// folder that it shows or marks. Empty if the user cancels.
+// Asks for recordings, which are files or folders (of pictures, text or a ROS 2 bag): a button of the dialog
+// chooses the folder that it shows or marks. Empty if the user cancels.
 QStringList askForRecordings(QWidget* parent, const QString& title, RecordingChoice choice, bool several);
 QString askForRecording(QWidget* parent, const QString& title, RecordingChoice choice);
 

@@ -17,7 +17,8 @@ void showKeys(QWidget* window);
 // Pictures of the guide: of the pages, as in the documentation, and of the motions, drawn like the
 // animations.
 
-// The guide for the program's dialog: embedded pictures with their titles, drawn motions, and no links to other pages.
+// The guide for the program's dialog: embedded pictures with their titles, drawn motions, and no links to
+// other pages.
 QString withPictures(const QString& markdown);
 
 // Adds the pictures that the guide refers to, at this width.

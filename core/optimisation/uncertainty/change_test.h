@@ -32,8 +32,8 @@ struct SensorChange {
   double sigmas = 0.0;
 };
 
-// For each sensor and kind the moment at which a change explains most; empty for recordings of less than three seconds.
-// `information` contains estimated quantities only, not fixed ones that are merely tested.
+// For each sensor and kind the moment at which a change explains most; empty for recordings of less than
+// three seconds. `information` contains estimated quantities only, not fixed ones that are merely tested.
 std::vector<SensorChange> findChanges(const ProjectedInformation& information);
 
 // The most certain change that exceeds changed_sigmas and the needed accuracy: of poses and clocks, with the

@@ -17,8 +17,8 @@
 namespace evical {
 namespace {
 
-// A covariance in the format of results: addresses, standard deviations and correlation of all numbers, and each quantity's
-// own sigmas.
+// A covariance in the format of results: addresses, standard deviations and correlation of all numbers, and
+// each quantity's own sigmas.
 UncertaintyReport makeReport(const CalibrationInput& input, const QuantityCovariance& quantities) {
   UncertaintyReport report;
   report.cameras.resize(input.cameras.size());
@@ -41,8 +41,8 @@ UncertaintyReport makeReport(const CalibrationInput& input, const QuantityCovari
   return report;
 }
 
-// Fills the drifts' sigmas of the report's IMUs. `covariance`: of the information's quantities, in their tangent spaces, the
-// biases' means among them.
+// Fills the drifts' sigmas of the report's IMUs. `covariance`: of the information's quantities, in their
+// tangent spaces, the biases' means among them.
 void reportDrift(const ProjectedInformation& information, const std::vector<Quantity>& drift_blocks,
                  const Eigen::MatrixXd& covariance, UncertaintyReport& report) {
   for (std::size_t k = 0; k < drift_blocks.size(); ++k) {

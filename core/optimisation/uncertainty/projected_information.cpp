@@ -24,8 +24,8 @@ namespace {
 
 using RowMajorMatrix = BandCholesky::RowMajorMatrix;
 
-// Elimination of the splines, and of drifting biases' knots, from the batch's normal equations: the information on the
-// quantities if all else is free to follow.
+// Elimination of the splines, and of drifting biases' knots, from the batch's normal equations: the
+// information on the quantities if all else is free to follow.
 class SplineElimination {
  public:
   // `equations`: with the same columns.
@@ -94,8 +94,8 @@ Groups groupsOf(const std::vector<BlockInfo>& blocks) {
   return groups;
 }
 
-// A fixed random sign for each residual of each block (the finaliser of splitmix64): the count is good to a fraction of a
-// percent.
+// A fixed random sign for each residual of each block (the finaliser of splitmix64): the count is good to a
+// fraction of a percent.
 double signOf(std::size_t block, Eigen::Index residual) {
   std::uint64_t bits = (static_cast<std::uint64_t>(block) << 20U) + static_cast<std::uint64_t>(residual);
   bits = (bits + 0x9e3779b97f4a7c15U) * 0xbf58476d1ce4e5b9U;
@@ -103,7 +103,8 @@ double signOf(std::size_t block, Eigen::Index residual) {
   return (bits >> 63U) != 0 ? 1.0 : -1.0;
 }
 
-// Circles whose errors may have a part in common: those of one point of the board, or of one place in the image.
+// Circles whose errors may have a part in common: those of one point of the board, or of one place in the
+// image.
 struct ResidualCluster {
   enum class Kind { Point, Place } kind = Kind::Point;
   int index = 0;
@@ -175,10 +176,10 @@ Eigen::MatrixXd informationHere(const UnknownColumns& columns, int threads, cons
   return of_quantities.selfadjointView<Eigen::Lower>();
 }
 
-// Contribution of the splines' own errors to the information of the quantities: the mean, by simulation and extrapolation
-// (J. Cook, L. Stefanski, JASA 1994). Further errors of the size that the splines already have add the same contribution again.
-// `splines`: their factored information; `total`: that of the quantities at the solution's splines. Both signs, so that linear
-// terms cancel.
+// Contribution of the splines' own errors to the information of the quantities: the mean, by simulation and
+// extrapolation (J. Cook, L. Stefanski, JASA 1994). Further errors of the size that the splines already have
+// add the same contribution again. `splines`: their factored information; `total`: that of the quantities at
+// the solution's splines. Both signs, so that linear terms cancel.
 Eigen::MatrixXd informationFromNoise(const UnknownColumns& columns, const BandCholesky& splines,
                                      const Eigen::MatrixXd& total, int threads, const RunContext& context) {
   constexpr std::uint64_t kSeed = 20260102;  // arbitrary
@@ -355,8 +356,8 @@ Sums Projection::sumOfAll() const {
   return all;
 }
 
-// Number of residuals of each group that the splines absorb: trace of J_x (J_x^T J_x)^-1 J_x^T over the group's
-// rows, by random signs (Hutchinson 1990). The few quantities themselves don't matter.
+// Number of residuals of each group that the splines absorb: trace of J_x (J_x^T J_x)^-1 J_x^T over the
+// group's rows, by random signs (Hutchinson 1990). The few quantities themselves don't matter.
 void Projection::countAbsorbed(Sums& sums) const {
   RowMajorMatrix solved = sums.signed_rows;
   elimination_.splines().solveInPlace(solved);

@@ -1,10 +1,11 @@
-// Information of the measurements about the calibrated quantities, after the splines and the knots of drifting biases
-// have been eliminated.
+// Information of the measurements about the calibrated quantities, after the splines and the knots of
+// drifting biases have been eliminated.
 //
 // With whitened Jacobians J_x (splines) and J_q (quantities), the projected Jacobian is
 //   P = J_q - J_x (J_x^T J_x)^-1 J_x^T J_q,
-// P^T P is the Schur complement, and an error e of the whitened measurements changes the estimate by (P^T P)^-1
-// P^T e. So P, by group and by stretch of time, also gives the effect of errors of another size, or of correlated errors.
+// P^T P is the Schur complement, and an error e of the whitened measurements changes the estimate by (P^T
+// P)^-1 P^T e. So P, by group and by stretch of time, also gives the effect of errors of another size, or of
+// correlated errors.
 #pragma once
 
 #include "core/base/progress.h"
@@ -32,8 +33,8 @@ struct MeasurementGroup {
   double variance() const;
 };
 
-// Scatter of the scores of one camera's circles, summed by point of the board or by place in the image: sum of s s^T over
-// the clusters. Its mean is the camera's information if errors are independent.
+// Scatter of the scores of one camera's circles, summed by point of the board or by place in the image: sum
+// of s s^T over the clusters. Its mean is the camera's information if errors are independent.
 struct ClusterScatter {
   std::size_t camera = 0;
   bool by_place = false;
@@ -47,23 +48,24 @@ struct ProjectedInformation {
   Eigen::MatrixXd total;                   // P^T P
   Eigen::VectorXd gradient;                // P^T r, r all residuals: 0 for free parameters at the optimum
   std::vector<MeasurementGroup> groups;
-  // P^T e of the measurements in each stretch of time, with residuals scaled up for the absorbed part, and P^T P.
+  // P^T e of the measurements in each stretch of time, with residuals scaled up for the absorbed part, and
+  // P^T P.
   std::vector<Eigen::VectorXd> scores;
   std::vector<Eigen::MatrixXd> information_by_stretch;
   double first_stretch_s = 0.0, stretch_s = 0.0;  // begin of the first, and length of each
-  // Mean contribution of the splines' own errors to P^T P. Without motion, derivatives still contain noise, and squared
-  // noise looks like information.
+  // Mean contribution of the splines' own errors to P^T P. Without motion, derivatives still contain noise,
+  // and squared noise looks like information.
   Eigen::MatrixXd from_noise;
-  // Drifting biases, in the order of CalibrationProblem::driftBlocks: negative derivative of the knots by the quantities,
-  // and the knots' covariance for known quantities. Empty for constant biases.
+  // Drifting biases, in the order of CalibrationProblem::driftBlocks: negative derivative of the knots by the
+  // quantities, and the knots' covariance for known quantities. Empty for constant biases.
   Eigen::MatrixXd drift_by_quantities, drift_covariance;
   // By camera: P^T d, with d the change of the residuals by one sigma of the pixels' repeated errors.
   std::vector<Eigen::VectorXd> pixel_errors;
   std::vector<ClusterScatter> clusters;
 };
 
-// `problem` must be built. Scores are summed over stretches of `stretch_s`. The result does not depend on the number of
-// threads. Throws Cancelled when asked to stop.
+// `problem` must be built. Scores are summed over stretches of `stretch_s`. The result does not depend on the
+// number of threads. Throws Cancelled when asked to stop.
 ProjectedInformation projectInformation(CalibrationProblem& problem, double stretch_s, int threads = 1,
                                         const RunContext& context = {});
 

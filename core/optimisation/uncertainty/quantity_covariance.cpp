@@ -22,8 +22,8 @@ constexpr double kMinVariance = 1e-300;
 // Below this information in the units above a direction counts as open, and its sigma is 1e4 units.
 constexpr double kMinInformation = 1e-8;
 
-// Inverse of the information, also if it is singular: directions without information get the least that is allowed.
-// `open` is this addition.
+// Inverse of the information, also if it is singular: directions without information get the least that is
+// allowed. `open` is this addition.
 struct SafeInverse {
   Eigen::MatrixXd inverse, open;
 };
@@ -59,8 +59,9 @@ constexpr auto kBlock = static_cast<std::ptrdiff_t>(kScoreLags) + 1;  // stretch
 struct BlockErrors {
   Eigen::MatrixXd information;
   Eigen::MatrixXd white_left;  // what scoreScatter would be of errors that are white
-  // Covariance of the estimate from its changes if one block is omitted (jackknife). Residuals of a block that was used show
-  // only a part of its errors, because the estimate has followed it: the larger its weight, the smaller this part.
+  // Covariance of the estimate from its changes if one block is omitted (jackknife). Residuals of a block
+  // that was used show only a part of its errors, because the estimate has followed it: the larger its
+  // weight, the smaller this part.
   Eigen::MatrixXd whole;
 };
 
@@ -113,8 +114,8 @@ Eigen::VectorXd growthOf(const ProjectedInformation& information, const Eigen::M
   return growth;
 }
 
-// Variance of each number that errors add which circles of one point of the board, or of one place in the image, have in
-// common: the larger of both for each camera. `inverse`: report from scores.
+// Variance of each number that errors add which circles of one point of the board, or of one place in the
+// image, have in common: the larger of both for each camera. `inverse`: report from scores.
 Eigen::VectorXd varianceOfClusters(const ProjectedInformation& information, const Eigen::MatrixXd& inverse) {
   constexpr double kCertain_sigmas = 3.0;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(inverse.rows());
@@ -137,7 +138,8 @@ Eigen::VectorXd varianceOfClusters(const ProjectedInformation& information, cons
   return sum;
 }
 
-// The lag of centres is a mean of the lags of brightening and darkening edges, with weights known to a quarter.
+// The lag of centres is a mean of the lags of brightening and darkening edges, with weights known to a
+// quarter.
 double delayVariance_s2(const BoardObservations& seen, const OptimisationOptions& options) {
   constexpr double kShare = 0.25;
   // Rounded stamps are late or early by up to a step, all of them alike.

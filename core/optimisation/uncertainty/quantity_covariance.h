@@ -32,9 +32,9 @@ Eigen::MatrixXd reportFromTangent(const ProjectedInformation& information, const
 QuantityCovariance quantityCovariance(const ProjectedInformation& information,
                                       const Eigen::MatrixXd& report_from_tangent);
 
-// All events of a camera are late by the delay of its pixels, which the recording does not determine: this adds to the
-// uncertainty of its time offset, and more if the delays of the two polarities differ. Not added if such pixels measure
-// everything (holdsPixelDelay).
+// All events of a camera are late by the delay of its pixels, which the recording does not determine: this
+// adds to the uncertainty of its time offset, and more if the delays of the two polarities differ. Not added
+// if such pixels measure everything (holdsPixelDelay).
 QuantityCovariance withPixelDelay(const CalibrationInput& input, const OptimisationOptions& options,
                                   QuantityCovariance covariance);
 

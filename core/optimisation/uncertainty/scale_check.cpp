@@ -30,8 +30,8 @@ struct Weighed {
   double prior_sigma, found, found_sigma;  // the prior's mean is 0
   double max_share;                        // of the prior's sigma, with which the prior is tested
 
-  // Disagreement between the recording and the prior; 0 if the recording adds little to the prior, since the estimate
-  // then says nothing about the prior's error.
+  // Disagreement between the recording and the prior; 0 if the recording adds little to the prior, since the
+  // estimate then says nothing about the prior's error.
   double sigmas() const {
     if (found_sigma > max_share * prior_sigma) return 0.0;
     return found / std::sqrt(prior_sigma * prior_sigma - found_sigma * found_sigma);
@@ -58,8 +58,8 @@ struct Combination {
   }
 };
 
-// Relative excess of the board's size over its given value, from accelerations in units of gravity. Either value may be
-// wrong.
+// Relative excess of the board's size over its given value, from accelerations in units of gravity. Either
+// value may be wrong.
 Weighed excessOfBoard(const CalibrationInput& input, const CalibrationState& state,
                       const QuantityCovariance& covariance, const OptimisationOptions& options) {
   Combination excess(covariance);

@@ -1,6 +1,6 @@
-// Check of the metric scale: it follows from the measured board size, and from gravity's norm by the accelerometer. Both
-// are unknowns with priors. The sigmas of translations include them. If the recording contradicts the priors, one of
-// them is wrong.
+// Check of the metric scale: it follows from the measured board size, and from gravity's norm by the
+// accelerometer. Both are unknowns with priors. The sigmas of translations include them. If the recording
+// contradicts the priors, one of them is wrong.
 #pragma once
 
 #include "core/data/calibration_setup.h"
@@ -23,8 +23,8 @@ struct ScaleCheck {
 ScaleCheck checkScale(const CalibrationInput& input, const CalibrationState& state,
                       const QuantityCovariance& covariance, const OptimisationOptions& options);
 
-// Covariance with the board and gravity's norm known exactly: the part that a longer recording, or another motion, can
-// reduce.
+// Covariance with the board and gravity's norm known exactly: the part that a longer recording, or another
+// motion, can reduce.
 QuantityCovariance withScaleKnown(const QuantityCovariance& covariance);
 
 }  // namespace evical

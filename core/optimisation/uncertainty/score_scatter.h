@@ -11,8 +11,8 @@
 
 namespace evical {
 
-// Scores are summed over stretches of one correlation time. Weights fall to zero over the next three stretches, so that
-// correlations of up to about that time count in full.
+// Scores are summed over stretches of one correlation time. Weights fall to zero over the next three
+// stretches, so that correlations of up to about that time count in full.
 inline constexpr std::size_t kScoreLags = 3;
 
 inline Eigen::MatrixXd scoreScatter(const std::vector<Eigen::VectorXd>& scores, Eigen::Index size) {

@@ -83,8 +83,8 @@ void add(std::string& doubts, const std::string& doubt) {
   doubts += (doubts.empty() ? "" : "; ") + doubt;
 }
 
-// If a misalignment is real, estimating it removes all errors that it causes. Intermittent errors look like one, but
-// most of them remain.
+// If a misalignment is real, estimating it removes all errors that it causes. Intermittent errors look like
+// one, but most of them remain.
 void testGyroscope(const std::string& imu, const Steps& steps, std::size_t quantity,
                    const OptimisationOptions& options, HeldDoubts& doubts) {
   const Step step = steps.of(quantity);

@@ -123,7 +123,8 @@ void weigh(const Rows& rows, const State& was, const Uncertainty& uncertainty, b
   });
 }
 
-// True for a camera that has its priors from another one of the same sensor, even if its lens was estimated separately.
+// True for a camera that has its priors from another one of the same sensor, even if its lens was estimated
+// separately.
 bool isSecondOfSensor(const SessionCamera& camera) {
   return !camera.same_sensor_as.empty();
 }

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kMissed = 0.05;  // share of missed changes of the detectable size
 
-// Tests with each group's numbers divided by its allowed drift, so that groups are comparable and the drift is a ball.
+// Tests with each group's numbers divided by its allowed drift, so that groups are comparable and the drift
+// is a ball.
 class SingleChanges {
  public:
   SingleChanges(const EstimatedChange& estimated, std::span<const ChangeGroup> groups, double false_alarms)

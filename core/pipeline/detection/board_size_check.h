@@ -16,8 +16,8 @@ namespace evical {
 // Counts of windows by outcome, as text.
 std::string outcomes(const BoardObservations& observations);
 
-// Throws CalibrationFailed if the board was never found. The reason has the camera's faults of the board, such
-// as tags with other numbers.
+// Throws CalibrationFailed if the board was never found. The reason has the camera's faults of the board,
+// such as tags with other numbers.
 void checkBoardSeen(const BoardObservations& observations, const Board& board,
                     std::span<const RecordingFault> faults);
 

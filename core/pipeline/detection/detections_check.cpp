@@ -225,8 +225,8 @@ void checkOverlap(const Session& session, const DetectionResult& detections) {
   }
 }
 
-// All options except those of later stages and other commands. Those of the intrinsics have an effect on lenses that
-// are calibrated first.
+// All options except those of later stages and other commands. Those of the intrinsics have an effect on
+// lenses that are calibrated first.
 std::vector<OptionRow> detectionOptions(const Session& session) {
   const CalibrationOptions usual;
   CalibrationOptions deciding = session.options;
@@ -244,8 +244,8 @@ std::vector<OptionRow> detectionOptions(const Session& session) {
   return differingOptions(deciding);
 }
 
-// Compilation fails if SessionCamera has a member that is missing here. Priors, the lens's uncertainty, the shutter and
-// rejected windows have no effect before the initialisation. The recordings may have been moved.
+// Compilation fails if SessionCamera has a member that is missing here. Priors, the lens's uncertainty, the
+// shutter and rejected windows have no effect before the initialisation. The recordings may have been moved.
 std::vector<DetectionKey> detectionKeys(const SessionCamera& camera) {
   const auto& [name, stream, resolution_px, intrinsics, recording, clock_offset_s, clock_scale, columns,
                prior, intrinsics_uncertainty, shutter, same_sensor_as, board, mirrored, rejected_windows_s] =

@@ -34,7 +34,8 @@ void checkOverlap(const Session& session, const DetectionResult& detections);
 // Options that affect the detection and differ from their defaults.
 std::vector<OptionRow> detectionOptions(const Session& session);
 
-// A key of a camera on which its detections depend, as text. Board, resolution and lens are compared by value.
+// A key of a camera on which its detections depend, as text. Board, resolution and lens are compared by
+// value.
 struct DetectionKey {
   const char* name;
   std::string value;

@@ -37,7 +37,8 @@ std::int64_t firstTime_ns(const SensorPacket& packet) {
   return time_ns;
 }
 
-// Power of 1000 by which one time since 1970 is larger than another, as in a table whose unit is wrong; 0 if it is none.
+// Power of 1000 by which one time since 1970 is larger than another, as in a table whose unit is wrong; 0 if
+// it is none.
 double unitRatio(double time_s, double other_s) {
   constexpr double kNear = 1e-3, kMin_s = 1e5;
   if (time_s <= 0.0 || other_s <= 0.0 || std::max(time_s, other_s) < kMin_s) return 0.0;
@@ -60,8 +61,8 @@ void takeSamples(const StreamInfo& info, const SessionImu& imu, const std::vecto
   }
 }
 
-// Applies the session's clock scale and offset of the sensor, after stray stamps are removed: one of them would be the fixed
-// point of the scale.
+// Applies the session's clock scale and offset of the sensor, after stray stamps are removed: one of them
+// would be the fixed point of the scale.
 void setClock(Stream& stream, SensorPacket& packet) {
   if (stream.clock_offset_s == 0.0 && stream.clock_scale == 1.0) return;
   forEachKind(packet, [&](auto& items) {
@@ -214,7 +215,8 @@ bool MergedStreams::readPacket(File& file) const {
   return true;
 }
 
-// From the first frames or views. Views by hand are seconds apart, so that their interval sets how far a stray is.
+// From the first frames or views. Views by hand are seconds apart, so that their interval sets how far a
+// stray is.
 void MergedStreams::judgeTimes(File& file) const {
   constexpr std::size_t kEnough = 30, kMax_bytes = std::size_t{64} << 20;
   constexpr double kFar = 10.0;  // intervals

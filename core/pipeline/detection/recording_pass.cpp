@@ -37,8 +37,8 @@ namespace {
 constexpr std::size_t kQueuedBatches = 16;
 constexpr std::size_t kWindowThreads = 2;
 
-// Collects the views of each camera in window threads. Events need one thread, next to that which reads and sorts them.
-// Frames leave the reading thread little to do, so that frame cameras take turns among all.
+// Collects the views of each camera in window threads. Events need one thread, next to that which reads and
+// sorts them. Frames leave the reading thread little to do, so that frame cameras take turns among all.
 class WindowWorkers {
  public:
   WindowWorkers(const Session& session, const std::vector<CameraLens>& lenses, const RunContext& context)

@@ -26,8 +26,8 @@ struct DetectionResult {
   double read_s = 0.0, detect_s = 0.0;  // times of the threads, which overlap
   // By camera, in time order: views that were rejected by hand and can be restored. Empty if none were.
   std::vector<std::vector<BoardView>> rejected_views = {};
-  // By IMU: step of coarse stamps, of which half a step is added to the sigmas of time offsets; 0: not coarse.
-  // Empty if all are 0.
+  // By IMU: step of coarse stamps, of which half a step is added to the sigmas of time offsets; 0: not
+  // coarse. Empty if all are 0.
   std::vector<double> imu_stamp_steps_s = {};
 };
 

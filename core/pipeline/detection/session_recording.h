@@ -52,8 +52,8 @@ class SessionRecording {
   std::vector<RecordingFault> faults() const;
 
  private:
-  // Files that one reader opens: two, if gyroscope and accelerometer have their own. Sensors that name the columns of
-  // one table differently have their own readers.
+  // Files that one reader opens: two, if gyroscope and accelerometer have their own. Sensors that name the
+  // columns of one table differently have their own readers.
   struct Source {
     std::filesystem::path file, accelerometer_file;
     std::string columns;

@@ -29,7 +29,8 @@ bool hasBoard(const WindowReport& window) {
          window.outcome == WindowOutcome::RejectedByHand;
 }
 
-// The window with the board that contains this time; null: none. Frames without exposure have no width, and people round.
+// The window with the board that contains this time; null: none. Frames without exposure have no width, and
+// people round.
 const WindowReport* windowWithBoardAt(double time_s, const BoardObservations& camera) {
   constexpr double kRounding_s = 1e-3;
   const auto from = std::ranges::lower_bound(camera.windows, time_s, {}, &WindowReport::time_s);

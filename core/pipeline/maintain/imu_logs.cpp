@@ -72,8 +72,8 @@ ImuLogs::ImuLogs(const std::vector<std::filesystem::path>& logs, const NamedResu
   start_ns_ = *first_ns;
 }
 
-// Each table of a gyroscope with that of its accelerometer, in the same folder if possible. Their names are those of the
-// calibration's files, or of --imu.
+// Each table of a gyroscope with that of its accelerometer, in the same folder if possible. Their names are
+// those of the calibration's files, or of --imu.
 std::vector<ImuLogs::LogFiles> ImuLogs::paired(const std::vector<std::filesystem::path>& logs) const {
   std::vector<LogFiles> all;
   for (const std::filesystem::path& log : logs) all.push_back({log, {}});

@@ -17,7 +17,8 @@
 namespace evical {
 namespace {
 
-// True if this camera's lens was calibrated alone. Cameras that share a sensor have the lens of the first one.
+// True if this camera's lens was calibrated alone. Cameras that share a sensor have the lens of the first
+// one.
 bool isCalibratedAlone(const Session& session, const CalibrationRun& run, std::size_t camera) {
   return session.sensorOf(camera) == camera && camera < run.intrinsics.size() &&
          run.intrinsics[camera].has_value();

@@ -55,7 +55,8 @@ void validateByHalves(const CalibrationInput& input, const OptimisationOptions& 
           : "halves of the recording: " + validation.failure);
 }
 
-// Removes views on the smaller part's side of a step, and those close to it. Returns the indices that the kept ones had.
+// Removes views on the smaller part's side of a step, and those close to it. Returns the indices that the
+// kept ones had.
 std::vector<int> keepLargerSide(const ClockStep& step, std::vector<BoardView>& views) {
   constexpr double kMargin_s = 1.5;  // accuracy of the step's time
   std::vector<int> kept;
@@ -268,8 +269,9 @@ class Calibration {
         rows, [&](const OptionRow& row) { return row.name == repair.key && row.value == "auto"; });
   }
 
-  // Measured corners of tags that are displaced in all views alike are moved until their residuals do not show it. Freed
-  // parameters continue from the solution before, unless that has a wrong input: its parameters may be far from right.
+  // Measured corners of tags that are displaced in all views alike are moved until their residuals do not
+  // show it. Freed parameters continue from the solution before, unless that has a wrong input: its
+  // parameters may be far from right.
   BatchSolution solveWithTags(const std::optional<CalibrationState>& solved,
                               std::vector<IterationRecord> before) {
     constexpr int kMaxRounds = 5;
@@ -317,7 +319,8 @@ class Calibration {
     if (!whole_views_[camera]) whole_views_[camera] = input_.cameras[camera].observations.views;
   }
 
-  // Residuals refer to the views of the pass, of which the input may have only some, with corrected corners of tags.
+  // Residuals refer to the views of the pass, of which the input may have only some, with corrected corners
+  // of tags.
   void referToPass(std::vector<CircleResidual>& residuals) const {
     for (CircleResidual& residual : residuals) {
       const auto camera = static_cast<std::size_t>(residual.camera);

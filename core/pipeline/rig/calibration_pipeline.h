@@ -39,8 +39,8 @@ struct CalibrationOutcome {
 };
 
 // Calibrates a session. Cameras without intrinsics are calibrated first, from the same events. Progress has
-// the stages of core/data/calibration_observer.h; the observer of `context` receives the cameras' windows once
-// all intrinsics are known.
+// the stages of core/data/calibration_observer.h; the observer of `context` receives the cameras' windows
+// once all intrinsics are known.
 CalibrationOutcome runCalibration(const Session& session, const RunContext& context);
 
 // The same from detections and IMU samples: `pass` from readAndDetect, restoreDetections or a simulation,

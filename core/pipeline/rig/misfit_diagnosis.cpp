@@ -201,7 +201,8 @@ std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolutio
   constexpr double kWorthExplaining = 0.2;  // residuals 1.2 times the expected ones
   const double before = totalMisfit(solution);
   if (before < kWorthExplaining) return std::nullopt;
-  // Side by side, since little of a solution is parallel; long recordings one after the other, for less memory.
+  // Side by side, since little of a solution is parallel; long recordings one after the other, for less
+  // memory.
   constexpr std::size_t kMany = 100'000;
   const int at_once = solution.circle_errors.size() < kMany ? options.threads : 1;
   std::array<std::optional<BatchSolution>, kTrials.size()> refits;

@@ -29,8 +29,8 @@ extern const Repair kFreeLenses, kFreeTurn, kFreeBow, kFreeDelay, kFreeLineDelay
 std::optional<Cause> findCause(const CalibrationInput& input, const BatchSolution& solution,
                                const OptimisationOptions& options, const RunContext& context);
 
-// The one place that ranks the reasons of a verdict: causes come before their symptoms, and symptoms of a wrong input
-// are removed. Sets the result's reason, repair and causes.
+// The one place that ranks the reasons of a verdict: causes come before their symptoms, and symptoms of a
+// wrong input are removed. Sets the result's reason, repair and causes.
 void rankReasons(CalibrationResult& result);
 
 }  // namespace evical

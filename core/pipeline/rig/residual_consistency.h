@@ -28,14 +28,14 @@ std::string doubtOfHalves(const SplitHalfCheck& validation, const VerdictOptions
 std::string scatteringStampsIn(const CalibrationInput& input, const BatchSolution& solution,
                                const std::vector<RecordingFault>& faults, const VerdictOptions& options);
 
-// Adds half a step of coarse IMU stamps in squares to the sigmas of time offsets (docs/maths.md, 10.1): rounding is the same
-// in all samples, and in no residual. Flags the result if that is more than time offsets may be uncertain by.
-// `steps_s`: by IMU, or empty.
+// Adds half a step of coarse IMU stamps in squares to the sigmas of time offsets (docs/maths.md, 10.1):
+// rounding is the same in all samples, and in no residual. Flags the result if that is more than time offsets
+// may be uncertain by. `steps_s`: by IMU, or empty.
 void addStampErrors(const CalibrationInput& input, const std::vector<double>& steps_s,
                     const VerdictOptions& options, CalibrationResult& result);
 
-// IMUs that were saturated for long; empty if none. Not a separate doubt, but the cause of most others, and of all if a
-// large part of the samples is missing.
+// IMUs that were saturated for long; empty if none. Not a separate doubt, but the cause of most others, and
+// of all if a large part of the samples is missing.
 QualityWarning saturationIn(const CalibrationInput& input, const VerdictOptions& options, double heavy_share);
 
 // A note for each event camera whose ON and OFF events have different delays.

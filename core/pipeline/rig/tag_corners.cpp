@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::size_t kCorners = 4;
 
-// Calls visit(corners, middle of the tag) for each whole tag of one view. Corners of a tag have consecutive indices.
+// Calls visit(corners, middle of the tag) for each whole tag of one view. Corners of a tag have consecutive
+// indices.
 template <class Corner, class Visit>
 void forEachTag(std::span<Corner> corners, const Visit& visit) {
   for (std::size_t i = 0; i + kCorners <= corners.size(); ++i) {

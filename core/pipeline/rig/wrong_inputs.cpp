@@ -82,7 +82,8 @@ std::optional<WrongRates> wrongRates(const Session& session, const CalibrationIn
   return std::nullopt;
 }
 
-// Accelerations whose norm is not gravity's, neither at the median nor as the mean in a frame that does not rotate.
+// Accelerations whose norm is not gravity's, neither at the median nor as the mean in a frame that does not
+// rotate.
 std::optional<CalibrationError> wrongForces(const Session& session, const CalibrationInput& input) {
   const InspectionOptions limits;
   const InitialisationOptions& options = *session.options.initialisation;
@@ -138,7 +139,8 @@ std::string wrongLensWords(const CameraIntrinsics& given, const CameraIntrinsics
   return text;
 }
 
-// True if a number of the lens differs by more than its sigma explains: a recording may not determine the lens.
+// True if a number of the lens differs by more than its sigma explains: a recording may not determine the
+// lens.
 bool differs(const CameraIntrinsics& given, const CameraIntrinsics& found,
              const std::optional<std::array<double, 9>>& sigmas, double limit_sigmas) {
   if (!sigmas || given.model != found.model) return true;
@@ -150,7 +152,8 @@ bool differs(const CameraIntrinsics& given, const CameraIntrinsics& found,
   return false;
 }
 
-// True if rows of circles are visible in some windows. With a wrong lens they are, but they do not fit the board.
+// True if rows of circles are visible in some windows. With a wrong lens they are, but they do not fit the
+// board.
 bool showsLattices(const BoardObservations& seen) {
   const auto isLattice = [](const WindowReport& window) {
     return window.outcome != WindowOutcome::TooFewEvents && window.outcome != WindowOutcome::TooFewCircles &&
@@ -256,8 +259,8 @@ std::optional<QualityWarning> wrongBoard(const CalibrationInput& input, const In
                         kWrongBoard};
 }
 
-// Drift without the pull of its prior around 0, which is strong where a wrong clock makes the other errors large.
-// `as_weighed`: of the solution, so without what the errors add to the reported variance.
+// Drift without the pull of its prior around 0, which is strong where a wrong clock makes the other errors
+// large. `as_weighed`: of the solution, so without what the errors add to the reported variance.
 double driftByData_ppm(double drift_ppm, const QuantityAddress& number,
                        const UncertaintyEstimate& uncertainty, double prior_ppm, double min_share) {
   const std::optional<Eigen::Index> column = columnOf(number, uncertainty.report.columns);
@@ -266,8 +269,8 @@ double driftByData_ppm(double drift_ppm, const QuantityAddress& number,
   return drift_ppm / std::max(min_share, 1.0 - of_prior);
 }
 
-// Clocks of computers and sensors differ by some ten ppm; stamps that are computed from a nominal rate, by up to some
-// percent. The batch estimates either, but accelerations and rates then have wrong scales.
+// Clocks of computers and sensors differ by some ten ppm; stamps that are computed from a nominal rate, by up
+// to some percent. The batch estimates either, but accelerations and rates then have wrong scales.
 std::optional<QualityWarning> wrongClock(const CalibrationInput& input, const CalibrationState& state,
                                          const UncertaintyEstimate& uncertainty, double prior_ppm,
                                          const InitialisationOptions& options) {
@@ -301,8 +304,8 @@ std::optional<QualityWarning> wrongClock(const CalibrationInput& input, const Ca
   return wrong;
 }
 
-// Noise density of samples: their third differences contain hardly any motion. Filters correlate neighbours, so the
-// largest figure of several distances counts.
+// Noise density of samples: their third differences contain hardly any motion. Filters correlate neighbours,
+// so the largest figure of several distances counts.
 double sampleDensity(const ImuData& imu, bool of_gyroscope) {
   constexpr double kLongest_s = 4e-3;
   std::vector<Eigen::Vector3d> values;
@@ -353,7 +356,8 @@ QualityWarning noiseWarning(const std::string& imu, const NoiseInput& input, dou
           times < 1.0 ? 1.0 : 0.0};
 }
 
-// Both densities are wrong, and each agrees with the other sensor's samples, whose densities are the arguments.
+// Both densities are wrong, and each agrees with the other sensor's samples, whose densities are the
+// arguments.
 std::optional<QualityWarning> exchangedNoise(const ImuData& imu, double of_rates, double of_forces,
                                              double agreement_ratio) {
   const double rates = imu.noise.gyroscope_density, forces = imu.noise.accelerometer_density;

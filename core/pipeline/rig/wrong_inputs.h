@@ -1,5 +1,6 @@
-// Inputs that the recording contradicts by a factor: units, sizes, lenses, noise densities (docs/maths.md, 10.7). A
-// calibration with such an input converges to wrong values or fails later, with a symptom as its reason.
+// Inputs that the recording contradicts by a factor: units, sizes, lenses, noise densities
+// (docs/maths.md, 10.7). A calibration with such an input converges to wrong values or fails later, with a
+// symptom as its reason.
 #pragma once
 
 #include "core/base/error.h"
@@ -16,19 +17,20 @@
 
 namespace evical {
 
-// Units of an IMU's numbers that are `times` too large. If the session states no unit, the recording's format has one.
+// Units of an IMU's numbers that are `times` too large. If the session states no unit, the recording's format
+// has one.
 LikelyUnit likelyUnitOfRates(const SessionImu* imu, double times, double tolerance);
 LikelyUnit likelyUnitOfForces(const SessionImu* imu, double times, double tolerance);
 
-// The wrong input that caused a failure; the error itself if there is none. Looks for the lens in the recording if
-// `recording_is_there`: this takes as long as a calibration of the lens.
+// The wrong input that caused a failure; the error itself if there is none. Looks for the lens in the
+// recording if `recording_is_there`: this takes as long as a calibration of the lens.
 CalibrationError withWrongInput(const CalibrationError& error, const Session& session,
                                 const CalibrationInput& input, const Initialisation& initial,
                                 bool recording_is_there, const RunContext& context);
 
-// A wrong unit behind a solution: of accelerations by their norm, which the batch's scales may absorb, and behind a doubtful
-// solution also of rates. If another input is wrong, only a ratio that a unit explains counts: a wrong
-// lens changes rates, too.
+// A wrong unit behind a solution: of accelerations by their norm, which the batch's scales may absorb, and
+// behind a doubtful solution also of rates. If another input is wrong, only a ratio that a unit explains
+// counts: a wrong lens changes rates, too.
 std::optional<QualityWarning> wrongUnit(const Session& session, const CalibrationInput& input,
                                         const CalibrationResult& result, const RunContext& context);
 

@@ -1,6 +1,7 @@
 // run.data: lossless data of a run that the other files of the result folder do not contain: splines,
 // iterations, residuals, observations, IMU samples. Each part is an HDF5 file with a checksum; fields missing
-// in older versions have their defaults. result.yaml is the truth and run.data its cache: a checksum ties them.
+// in older versions have their defaults. result.yaml is the truth and run.data its cache: a checksum ties
+// them.
 #pragma once
 
 #include "core/base/atomic_file.h"
@@ -24,8 +25,8 @@ struct ReadRunData {
   std::vector<std::string> missing;  // descriptions with reasons
 };
 
-// Does not throw for the file's content: parts that are damaged or inconsistent are missing. All are, if the file
-// was not written with this `result_yaml`. Older versions did not write the checksum.
+// Does not throw for the file's content: parts that are damaged or inconsistent are missing. All are, if the
+// file was not written with this `result_yaml`. Older versions did not write the checksum.
 ReadRunData readRunData(const std::filesystem::path& file,
                         const std::optional<std::string>& result_yaml = std::nullopt);
 ReadRunData parseRunData(const std::string& content);

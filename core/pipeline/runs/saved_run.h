@@ -85,8 +85,8 @@ void forEachRecording(Sessions& session, Visit&& visit) {
 bool isSavedRun(const std::filesystem::path& path);
 
 // Throws CalibrationError (BadInput) only if there is nothing to display: both result.yaml and run.data are
-// missing or damaged. Other missing data are listed. Numbers are those of result.yaml: run.data is not used if the
-// two differ.
+// missing or damaged. Other missing data are listed. Numbers are those of result.yaml: run.data is not used
+// if the two differ.
 SavedRun readSavedRun(const std::filesystem::path& path);
 
 // Throw CalibrationError (BadInput) if run.yaml is missing or damaged.

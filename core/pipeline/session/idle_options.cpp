@@ -38,7 +38,8 @@ std::string whereOfImus(const Session& session, bool idle, const char* reason) {
   return session.imus.empty() ? "there is no IMU" : where(idle, reason);
 }
 
-// Why the options of a source of candidates have no effect: it is unused, or only used if the other one fails.
+// Why the options of a source of candidates have no effect: it is unused, or only used if the other one
+// fails.
 std::string withoutCandidates(CandidateSource source, const Session& session, const StreamTypes& types,
                               const char* alone, const char* fallback) {
   const DetectionOptions& detection = session.options.front_end->detection;

@@ -37,8 +37,9 @@ struct ImportedFiles {
   std::vector<std::string> notes;
 };
 
-// Contents of the files that `evical import` writes: the session as `output`; or, if all files have only camera intrinsics,
-// Evical's intrinsics, one file per camera ("left.yaml"; for several "left-cam0.yaml", ...).
+// Contents of the files that `evical import` writes: the session as `output`; or, if all files have only
+// camera intrinsics, Evical's intrinsics, one file per camera ("left.yaml"; for several "left-cam0.yaml",
+// ...).
 ImportedFiles importFiles(const ImportRequest& request, const std::filesystem::path& output);
 
 // Contents of the files of an import, by program.

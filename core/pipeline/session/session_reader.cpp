@@ -370,8 +370,8 @@ Session oneSessionFrom(const YamlNode& root, const SessionFolder& folder, const 
                      [&](Session& session) { readRecordings(root["recording"], folder, session); });
 }
 
-// Folder to which paths in the session are relative. If the session is opened through a link, this is the link's folder if the
-// recording is there, otherwise that of the file itself.
+// Folder to which paths in the session are relative. If the session is opened through a link, this is the
+// link's folder if the recording is there, otherwise that of the file itself.
 std::filesystem::path folderOfSession(const std::filesystem::path& file, const YamlNode& root) {
   std::error_code error;
   if (!std::filesystem::is_symlink(file, error) || !root.isMap()) return file.parent_path();

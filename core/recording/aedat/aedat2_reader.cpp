@@ -77,8 +77,8 @@ struct Look {
   std::vector<double> accelerations;  // norms, at a full scale of 4 g
 };
 
-// The full scales at which the median acceleration is closest to gravity. jAER sets 4 g and 500 deg/s, and for some DAVIS240C
-// 8 g and 1000 deg/s.
+// The full scales at which the median acceleration is closest to gravity. jAER sets 4 g and 500 deg/s, and
+// for some DAVIS240C 8 g and 1000 deg/s.
 double imuRanges(const Look& look) {
   constexpr double kNear_g = 0.1;
   return !look.accelerations.empty() && std::abs(medianOf(look.accelerations) - 0.5) < kNear_g ? 2.0 : 1.0;

@@ -19,8 +19,8 @@ namespace {
 
 constexpr hsize_t kEventChunk = 65'536, kImuChunk = 1'024;
 
-// A dataset that grows at its end, chunk by chunk. Why it cannot be written is put into `problem`: the library forgets it when
-// the next handle is closed.
+// A dataset that grows at its end, chunk by chunk. Why it cannot be written is put into `problem`: the
+// library forgets it when the next handle is closed.
 template <class Number>
 class GrowingDataset {
  public:

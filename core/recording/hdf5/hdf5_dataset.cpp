@@ -62,8 +62,8 @@ const auto kIterateLinks = H5Literate;
 using ObjectInfo = H5O_info_t;
 #endif
 
-// Visits all objects once. The library's own visits take a time that grows with the square of the depth, and name no links to
-// other files.
+// Visits all objects once. The library's own visits take a time that grows with the square of the depth, and
+// name no links to other files.
 class Walk {
  public:
   explicit Walk(hid_t file) : file_(file) {}

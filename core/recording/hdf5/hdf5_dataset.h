@@ -35,8 +35,8 @@ DatasetList listDatasets(hid_t file, const std::string& place);
 // Throws CalibrationError (BadInput) if a filter of a dataset's creation properties is not installed.
 void requireFilters(hid_t creation, const std::string& place, const std::string& path);
 
-// Missing and shared chunks make a table of any length out of a small file. Throws CalibrationError (BadInput) if a file
-// cannot have these rows.
+// Missing and shared chunks make a table of any length out of a small file. Throws CalibrationError
+// (BadInput) if a file cannot have these rows.
 void requirePlausibleRows(hid_t file, std::uint64_t rows, std::uint64_t row_bytes, const std::string& place);
 
 // For a filter's input and output, the cache, and the library's own needs.

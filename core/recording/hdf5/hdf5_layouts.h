@@ -27,9 +27,9 @@ struct FoundStreams {
   std::vector<std::string> problems;  // sentences on omitted datasets
 };
 
-// `names`: datasets of a stream in other layouts, "t_us=a/time,x=a/col,y=a/row,p=a/sign" or "t_ns=b/t,gyro=b/w,accel=b/a".
-// Throws CalibrationError (BadInput) if there is neither an event nor an IMU sample nor a picture, or a named dataset is
-// missing.
+// `names`: datasets of a stream in other layouts, "t_us=a/time,x=a/col,y=a/row,p=a/sign" or
+// "t_ns=b/t,gyro=b/w,accel=b/a". Throws CalibrationError (BadInput) if there is neither an event nor an IMU
+// sample nor a picture, or a named dataset is missing.
 FoundStreams findStreams(hid_t file, const std::string& place, const ColumnNames& names);
 
 }  // namespace evical::hdf5

@@ -62,7 +62,8 @@ MemoryLimit::~MemoryLimit() {
 std::string lastProblem() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keepInnermost, &text);
-  // "file write failed: time = ..., errno = 28, error message = 'No space left on device', buf = ...": the system's words.
+  // "file write failed: time = ..., errno = 28, error message = 'No space left on device', buf = ...": the
+  // system's words.
   constexpr std::string_view kMessage = "error message = '";
   if (const std::size_t at = text.find(kMessage); at != std::string::npos) {
     text.erase(0, at + kMessage.size());

@@ -47,8 +47,8 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-// In the process that only reads a recording, limits the memory that the library can take in addition to what is used now:
-// its filters unpack a chunk to any size. Without effect in other processes.
+// In the process that only reads a recording, limits the memory that the library can take in addition to what
+// is used now: its filters unpack a chunk to any size. Without effect in other processes.
 class MemoryLimit {
  public:
   explicit MemoryLimit(std::uint64_t bytes);

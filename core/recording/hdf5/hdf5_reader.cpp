@@ -175,7 +175,8 @@ void Hdf5Reader::noteOrder(const Source& source) {
     addFault(streams_[source.stream].name, FaultKind::Unsorted, source.order.text());
 }
 
-// Fraction of the rows that are read. The IMU's text file is not counted: its length is unknown, and it is short.
+// Fraction of the rows that are read. The IMU's text file is not counted: its length is unknown, and it is
+// short.
 double Hdf5Reader::fractionRead() const {
   double read = 0.0, rows = 0.0;
   for (const auto& source : sources_) {

@@ -1,7 +1,8 @@
 // Arrays of events in a file or folder, identified by their names and types, and otherwise by their numbers:
-//   structured arrays with fields like x, y, t, p (tonic, dv, Metavision, expelliarmus, N-ImageNet's event_data),
-//   arrays of one field each (vid2e, e2vid, DSEC's names with t_offset), also xy (EVIMO2, event_utils) and xyp,
-//   rows or columns of four numbers (EVIMO, data of RPG), which are identified by the numbers.
+//   structured arrays with fields like x, y, t, p (tonic, dv, Metavision, expelliarmus, N-ImageNet's
+//   event_data), arrays of one field each (vid2e, e2vid, DSEC's names with t_offset), also xy (EVIMO2,
+//   event_utils) and xyp, rows or columns of four numbers (EVIMO, data of RPG), which are identified by the
+//   numbers.
 #pragma once
 
 #include "core/geometry/resolution.h"

@@ -89,8 +89,8 @@ bool takeTimesOfNames(PictureList& list) {
   return true;
 }
 
-// A list with the times of a table in their usual unit; if that cannot be, in the unit that gives a rate of cameras, or
-// by the names, or without times.
+// A list with the times of a table in their usual unit; if that cannot be, in the unit that gives a rate of
+// cameras, or by the names, or without times.
 template <class Build>
 PictureList withPlausibleTimes(int usual_digits, const std::string& table, const Build& build) {
   PictureList list = build(usual_digits);
@@ -218,7 +218,8 @@ std::optional<fs::path> findTable(const fs::path& folder) {
   return std::nullopt;
 }
 
-// Names that differ only by a word are of several cameras if these have the same numbers: left00.png, right00.png.
+// Names that differ only by a word are of several cameras if these have the same numbers: left00.png,
+// right00.png.
 std::vector<std::vector<std::string>> byCamera(const std::vector<std::string>& names) {
   constexpr std::size_t kMaxCameras = 8;
   std::map<std::string, std::vector<std::string>> groups;
@@ -246,7 +247,8 @@ std::string cameraWord(const std::string& name) {
   return word.empty() ? "other" : word;
 }
 
-// The pictures of a folder, one list for each camera; with the times of a table, if there is one, or of their names.
+// The pictures of a folder, one list for each camera; with the times of a table, if there is one, or of their
+// names.
 std::vector<PictureList> listPictures(const fs::path& folder, const std::string& name) {
   const std::vector<std::string> names = pictureNames(folder);
   if (names.empty()) return {};

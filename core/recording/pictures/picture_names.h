@@ -30,8 +30,8 @@ struct NumberInName {
 };
 NumberInName numberInName(std::string_view name);
 
-// Times of the names, where they have one: ns, us or ms, whichever gives a rate that cameras have; seconds with a
-// fraction; or dates. Empty if they are only a count.
+// Times of the names, where they have one: ns, us or ms, whichever gives a rate that cameras have; seconds
+// with a fraction; or dates. Empty if they are only a count.
 struct TimesInNames {
   std::vector<std::optional<std::int64_t>> times_ns;
   std::string note;  // if they are not ns

@@ -13,8 +13,9 @@ namespace evical::pictures {
 // Appends the rows "time, name" of a table; its unit of time is 10^unit_digits ns.
 void readNamedTimes(const std::filesystem::path& table, int unit_digits, PictureList& list);
 
-// Appends the rows of a table in any order of columns: a time (a number, or a date of two columns) and the name of a
-// picture in the list's folder, with or without its extension. Rows without names are paired with the pictures in order.
+// Appends the rows of a table in any order of columns: a time (a number, or a date of two columns) and the
+// name of a picture in the list's folder, with or without its extension. Rows without names are paired with
+// the pictures in order.
 void readAnyTimes(const std::filesystem::path& table, int unit_digits, PictureList& list);
 
 // Digits of the unit of a table of whole numbers, or of numbers with decimals, which are s.

@@ -13,8 +13,8 @@ namespace {
 
 // Below the period of DAT's counter, 71 minutes. RAW grows by 2 bytes in 4 ms of a pause.
 constexpr std::int64_t kLongestPause_us = 3'600'000'000;
-// Times in Prophesee's files count from the start of the camera. A recording that starts later is written with times from its
-// first event.
+// Times in Prophesee's files count from the start of the camera. A recording that starts later is written
+// with times from its first event.
 constexpr std::int64_t kLatestStart_ns = kLongestPause_us * kMicrosecond_ns;
 
 // One event stream, encoded as words.
@@ -89,7 +89,8 @@ class RawWriter final : public EventFileWriter {
   void word(unsigned code, std::int64_t value) {
     bytes_ += numberBytes(static_cast<std::uint16_t>(code << 12 | (static_cast<unsigned>(value) & 0xFFFU)));
   }
-  // The 24-bit counter overflows. Each value of its upper half is written, so that readers can count the overflows.
+  // The 24-bit counter overflows. Each value of its upper half is written, so that readers can count the
+  // overflows.
   void append(const Event& event, std::int64_t time_us) override {
     constexpr int kLowBits = 12;
     time_us = std::max(time_us, last_us_);  // times cannot decrease: slightly late events get the latest time

@@ -239,8 +239,8 @@ void BagSource::listFromChunk(std::uint64_t position) {
   chunk_ = {};
 }
 
-// A topic of a sensor with messages of several nodes in turn is several topics. Nodes that follow each other, as after a
-// restart, are one publisher.
+// A topic of a sensor with messages of several nodes in turn is several topics. Nodes that follow each other,
+// as after a restart, are one publisher.
 void BagSource::separatePublishers() {
   constexpr int kMaxMessages = 20'000, kEnoughTurns = 4;
   std::map<std::string, std::set<std::string>> nodes;

@@ -1,6 +1,6 @@
-// The events of one topic's event_camera_msgs/EventPacket messages, in the encodings evt2, evt21, evt3, mono, libcaer and
-// libcaer_cmp. Messages may continue the state of the previous one, so a decoder follows its topic from the
-// start. Source: ros-event-camera/event_camera_codecs.
+// The events of one topic's event_camera_msgs/EventPacket messages, in the encodings evt2, evt21, evt3, mono,
+// libcaer and libcaer_cmp. Messages may continue the state of the previous one, so a decoder follows its
+// topic from the start. Source: ros-event-camera/event_camera_codecs.
 #pragma once
 
 #include "core/data/event.h"

@@ -25,8 +25,8 @@ const MessageType& imuType(Serialization serialization);
 const MessageType& imageType(Serialization serialization);
 const MessageType& packedImageType(Serialization serialization);
 
-// By md5 first, then by the fields of the definition, and without one by the name of a known package, or the last part of
-// any name: packages are renamed and copied, and forks have other fields.
+// By md5 first, then by the fields of the definition, and without one by the name of a known package, or the
+// last part of any name: packages are renamed and copied, and forks have other fields.
 Content contentOf(std::string_view type, std::string_view md5, std::string_view definition);
 
 // Why messages that may be of a sensor are not read; empty for others.

@@ -39,14 +39,15 @@ bool isRecordingFile(const fs::path& path) {
   return false;
 }
 
-// Name of a part of a split recording: "a_3.bag", "a_3.mcap". It may also contain its start time, which differs:
-// "a_2024-05-06-07-08-09_2.bag".
+// Name of a part of a split recording: "a_3.bag", "a_3.mcap". It may also contain its start time, which
+// differs: "a_2024-05-06-07-08-09_2.bag".
 const std::regex& numberedPart() {
   static const std::regex numbered(R"((.*?)(_\d{4}(?:-\d{2}){5})?_(\d{1,6})\.(bag|db3|mcap)(?:\.zstd)?)");
   return numbered;
 }
 
-// Parts before and after this one. They count from 0: without part 0 these are recordings that a person numbered.
+// Parts before and after this one. They count from 0: without part 0 these are recordings that a person
+// numbered.
 std::vector<std::string> otherParts(const fs::path& path) {
   const std::regex& numbered = numberedPart();
   std::smatch own, other;

@@ -60,7 +60,8 @@ std::uint64_t statedBytes(const std::filesystem::path& path) {
 
 constexpr std::int64_t kLargestId = std::int64_t{1} << 40;
 
-// Limits of the lists of topics and definitions: a column's default value makes rows long that take no space in the file.
+// Limits of the lists of topics and definitions: a column's default value makes rows long that take no space
+// in the file.
 class ListedText {
  public:
   explicit ListedText(std::string file) : file_(std::move(file)) {}

@@ -1,4 +1,5 @@
-// First lines of a text table: rows of numbers, and the lines above them, which may name columns or state scales.
+// First lines of a text table: rows of numbers, and the lines above them, which may name columns or state
+// scales.
 #pragma once
 
 #include "core/geometry/resolution.h"

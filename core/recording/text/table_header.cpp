@@ -70,7 +70,8 @@ std::string proposedTime(const std::string& unit) {
   return !timeUnitNamed(unit) ? "t" : is_word ? "t_" + unit : "t [" + unit + "]";
 }
 
-// Name of a used column in a proposed line. `bare`: the letter of the sensor that bare axes belong to, if there are any.
+// Name of a used column in a proposed line. `bare`: the letter of the sensor that bare axes belong to, if
+// there are any.
 std::string proposedName(const ColumnName& column, std::optional<char> bare, bool imu) {
   if (column.kind == ColumnKind::Time) return proposedTime(column.unit);
   if (column.kind == ColumnKind::Acceleration || column.kind == ColumnKind::AngularRate)
@@ -99,7 +100,8 @@ void dropMixedUnits(const std::vector<Axes>& vectors, TableHeader& header) {
       for (const std::size_t i : axes) header.columns[i].unit.clear();
 }
 
-// Proposed line for the session; '?' for names without a known meaning. `sensor`: letter of a sensor for bare axes.
+// Proposed line for the session; '?' for names without a known meaning. `sensor`: letter of a sensor for bare
+// axes.
 std::string suggestion(TableHeader header, std::span<const TableColumn> table, char sensor = '?') {
   const std::vector<Axes> accelerations = accelerationsOf(header),
                           rates = vectorsOf(header, ColumnKind::AngularRate);
@@ -266,7 +268,8 @@ void applyImus(const NamedTable& named, TextColumns& columns) {
   applyImu(named, {"", only(accelerations), only(rates)}, columns);
 }
 
-// Texts of a column that occur about equally often: numbers of IMUs whose rows alternate. Empty for other columns.
+// Texts of a column that occur about equally often: numbers of IMUs whose rows alternate. Empty for other
+// columns.
 std::vector<std::string> imuNumbers(const TableColumn& column) {
   std::map<std::string, std::size_t> counts;
   for (const std::string_view cell : column.cells) {

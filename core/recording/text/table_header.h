@@ -34,7 +34,8 @@ struct TableHeader {
 
 TableHeader readTableHeader(std::string_view line, bool comment);
 
-// Fills in `columns`, or sets `problem` and `advice` if the names are ambiguous. `sensor`: named by the file's name.
+// Fills in `columns`, or sets `problem` and `advice` if the names are ambiguous. `sensor`: named by the
+// file's name.
 void applyHeader(TableHeader header, std::span<const TableColumn> table, std::size_t rows,
                  std::optional<MeasuredBy> sensor, TextColumns& columns);
 

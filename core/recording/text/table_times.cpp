@@ -119,8 +119,8 @@ std::optional<SplitTime> splitTime(std::string_view cell) {
   return split;
 }
 
-// Digits of fractions that are written without their leading zeros: as decimals these times would run backwards. 0 for
-// decimals.
+// Digits of fractions that are written without their leading zeros: as decimals these times would run
+// backwards. 0 for decimals.
 int digitsWithoutZeros(const TableColumn& time) {
   constexpr double kFarFewer = 0.1;
   std::vector<SplitTime> times;

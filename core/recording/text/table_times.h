@@ -20,8 +20,8 @@ std::int64_t guessUnit_ns(const TableColumn& time, StreamType type);
 // Sets the units of columns.time whose unit_ns is 0, and notes doubtful ones.
 void chooseTimeUnit(std::span<const TableColumn> table, TextColumns& columns);
 
-// Notation of times: of the day, or seconds and their fractions without leading zeros. Sets columns.problem if no
-// time can be read, or if all are equal.
+// Notation of times: of the day, or seconds and their fractions without leading zeros. Sets columns.problem
+// if no time can be read, or if all are equal.
 void checkTimes(const TableHead& head, TextColumns& columns);
 
 }  // namespace evical

@@ -13,7 +13,8 @@ namespace {
 constexpr unsigned kBuffer_bytes = 1U << 17;
 constexpr std::size_t kMaxAtOnce = std::size_t{1} << 30;  // zlib counts in int
 
-// Place of the high byte in units of UTF-16 without a mark: the bytes there are 0, and the others are ASCII. -1 for other texts.
+// Place of the high byte in units of UTF-16 without a mark: the bytes there are 0, and the others are ASCII.
+// -1 for other texts.
 int highByteOf(std::string_view first_bytes) {
   constexpr std::size_t kFewest = 8;
   const auto all = [&](std::size_t from, auto is) {

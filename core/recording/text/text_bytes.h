@@ -1,5 +1,5 @@
-// Bytes of a text file from begin to end, unpacked if it is packed with gzip. UTF-16, as PowerShell and Excel write it,
-// becomes UTF-8, also without a byte order mark.
+// Bytes of a text file from begin to end, unpacked if it is packed with gzip. UTF-16, as PowerShell and Excel
+// write it, becomes UTF-8, also without a byte order mark.
 #pragma once
 
 #include "core/recording/unpacking_limit.h"
@@ -25,8 +25,8 @@ class TextBytes {
   // Throws CalibrationError (BadInput) if the file cannot be opened.
   explicit TextBytes(const std::filesystem::path& path);
 
-  // Number of bytes read; 0 at the end, and if a packed file is damaged from here on. Throws CalibrationError (BadInput) if it
-  // unpacks to more than a recording can.
+  // Number of bytes read; 0 at the end, and if a packed file is damaged from here on. Throws CalibrationError
+  // (BadInput) if it unpacks to more than a recording can.
   std::size_t read(char* bytes, std::size_t count);
   bool isDamaged() const { return damaged_; }  // a packed file ended too early
 

@@ -71,8 +71,8 @@ bool guessEvents(const TableHead& head, TextColumns& columns) {
   return true;
 }
 
-// `ros2 topic echo --csv` of sensor_msgs/Imu: seconds, nanoseconds, frame, orientation and its covariance, rates and
-// theirs, accelerations and theirs.
+// `ros2 topic echo --csv` of sensor_msgs/Imu: seconds, nanoseconds, frame, orientation and its covariance,
+// rates and theirs, accelerations and theirs.
 bool recogniseEcho(const TableHead& head, TextColumns& columns) {
   if (head.columns.size() != kEchoedImuColumns || head.columns[2].numbers.isPixel()) return false;
   const auto whole = [&](std::size_t i) {
@@ -189,8 +189,8 @@ std::vector<std::pair<std::size_t, std::string>> neededColumns(const TextColumns
 constexpr const char* kWithoutThousands =
     "Write times without thousands separators, such as 1700000000000000000";
 
-// The first time with a point between thousands, if times as decimals would run backwards: 995, then 1.000. Shorter ones of the
-// same column look like decimals.
+// The first time with a point between thousands, if times as decimals would run backwards: 995, then 1.000.
+// Shorter ones of the same column look like decimals.
 std::optional<std::size_t> firstThousands(const TableColumn& time) {
   std::optional<std::size_t> first;
   bool several = false, back_as_decimals = false;
@@ -276,8 +276,9 @@ void checkUnread(const TableHead& head, TextColumns& columns) {
       return refuseCell(columns, head.unread_line, what, head.unread_cells[column]);
 }
 
-// Reads the axes in the order that a line above the header states: "yxZ". An upper case letter is the channel, a lower
-// case one its negative. Lower case letters only have signs if the axes are right-handed with them.
+// Reads the axes in the order that a line above the header states: "yxZ". An upper case letter is the
+// channel, a lower case one its negative. Lower case letters only have signs if the axes are right-handed
+// with them.
 bool turnAxes(const std::string& orientation, TextColumns& columns) {
   std::array<std::size_t, 3> channel{};
   std::array<double, 3> sign{};

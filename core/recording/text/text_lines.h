@@ -56,8 +56,8 @@ int digitsOf(std::int64_t unit_ns);
 // a zone. A date alone is its midnight.
 bool parseDate(std::string_view text, std::int64_t& time_ns);
 
-// Time of day, "12:34:56.789", also with a decimal comma, with AM or PM, or with ":789" for milliseconds, as ns since
-// midnight.
+// Time of day, "12:34:56.789", also with a decimal comma, with AM or PM, or with ":789" for milliseconds, as
+// ns since midnight.
 bool parseClock(std::string_view text, std::int64_t& time_ns);
 
 // A finite number; false otherwise.

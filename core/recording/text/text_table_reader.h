@@ -76,7 +76,8 @@ bool isTextTable(const std::filesystem::path& file);
 // True if a folder has files that this reader recognises by name.
 bool isTextFolder(const std::filesystem::path& folder);
 
-// True if a folder has other tables of IMUs, or of a gyroscope or an accelerometer, or tables with these names.
+// True if a folder has other tables of IMUs, or of a gyroscope or an accelerometer, or tables with these
+// names.
 bool hasImuTables(const std::filesystem::path& folder, const ColumnNames& names);
 
 }  // namespace evical

@@ -1,6 +1,6 @@
 // The calib groups of M3ED's files: written there by insert_calibration of daniilidis-group/m3ed
-// (build_system/bag_processing/rosbag2hdf5.py, 2b39788), read by its load_remapping (build_system/semantics/internimage.py,
-// 2b39788).
+// (build_system/bag_processing/rosbag2hdf5.py, 2b39788), read by its load_remapping
+// (build_system/semantics/internimage.py, 2b39788).
 #include "tests/core/export/exported_rig.h"
 #include "tests/support/test_program.h"
 

@@ -116,7 +116,8 @@ class TestExportNumbers : public QObject {
     }
   }
 
-  // samples/cpp/stereo_calib.cpp at aa2dde3 writes both files with these keys, and its readers undistort with them.
+  // samples/cpp/stereo_calib.cpp at aa2dde3 writes both files with these keys, and its readers undistort with
+  // them.
   void openCv_rectifiesThePair() {
     RigKind kind;
     kind.third_radial = true;

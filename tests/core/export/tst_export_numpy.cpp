@@ -1,4 +1,5 @@
-// NumPy's own rules: lib/format.py of NumPy 1.24.2 (Debian's python3-numpy) for arrays, Python's zipfile for the archive.
+// NumPy's own rules: lib/format.py of NumPy 1.24.2 (Debian's python3-numpy) for arrays, Python's zipfile for
+// the archive.
 #include "core/format/npy.h"
 #include "tests/core/export/exported_rig.h"
 #include "tests/support/own_result.h"

@@ -75,8 +75,8 @@ KimeraFile kimeraFile(const ExportedFiles& exported, const char* name) {
   return KimeraFile(contentOf(exported, std::string("kimera/") + name));
 }
 
-// DSO's Undistort::getUndistorterForFile and readFromFile: JakobEngel/dso, src/util/Undistort.cpp at 927edc6, which
-// lukasvst/dm-vio has unchanged (src/dso/util/Undistort.cpp at fcc306b).
+// DSO's Undistort::getUndistorterForFile and readFromFile: JakobEngel/dso, src/util/Undistort.cpp at 927edc6,
+// which lukasvst/dm-vio has unchanged (src/dso/util/Undistort.cpp at fcc306b).
 struct DsoCamera {
   Lens lens;
   int width_px = 0, height_px = 0;

@@ -1,5 +1,5 @@
-// Texts of strangers in exported files: names, streams, reasons and versions that would be code if a file did not quote them. Each
-// file is parsed, or run, by a program of its language.
+// Texts of strangers in exported files: names, streams, reasons and versions that would be code if a file did
+// not quote them. Each file is parsed, or run, by a program of its language.
 #include "core/base/plain_text.h"
 #include "core/export/export_text.h"
 #include "core/export/read_back.h"

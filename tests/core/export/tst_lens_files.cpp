@@ -1,4 +1,5 @@
-// Cameras in single files of other programs: every layout that is exported, and files as their own programs write them.
+// Cameras in single files of other programs: every layout that is exported, and files as their own programs
+// write them.
 #include "core/base/error.h"
 #include "core/foreign/lens_files.h"
 #include "core/format/intrinsics_yaml.h"

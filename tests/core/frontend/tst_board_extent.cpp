@@ -14,7 +14,8 @@ using namespace evical::test;
 
 constexpr double kBoardExtentHalfWindow_s = 0.02;
 
-// The session's extent of the existing board: that many rows and columns, from this row and column on, or backwards.
+// The session's extent of the existing board: that many rows and columns, from this row and column on, or
+// backwards.
 struct Claim {
   int rows, cols, first_row = 0, first_col = 0;
   bool half_turn = false;

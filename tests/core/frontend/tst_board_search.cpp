@@ -110,8 +110,9 @@ void TestBoardSearch::otherSource_isTriedWhereTheFirstFails() {
   QCOMPARE(searchBoard(history(), 0, MovingBoard().scene(), options).size(), std::size_t{1});
 }
 
-// It has dozens of placements on the same circles, which must not be fitted one by one: a recording of 10 s took
-// minutes for its message. A search that fails takes all lengths of windows: some 40 times one that finds the board.
+// It has dozens of placements on the same circles, which must not be fitted one by one: a recording of 10 s
+// took minutes for its message. A search that fails takes all lengths of windows: some 40 times one that
+// finds the board.
 void TestBoardSearch::muchTooLargeBoard_isSearchedInBoundedTime() {
   FrontEndOptions options;
   const BoardScene given = MovingBoard().scene();

@@ -335,8 +335,8 @@ class TestCameraModel : public QObject {
     QTest::addColumn<double>("xi");
     QTest::addColumn<double>("alpha");
     QTest::addColumn<double>("end_deg");
-    // With w = cos(pi - angle) at the second sphere, min(alpha, 1 - alpha) / max(alpha, 1 - alpha), the angle at the first
-    // is pi - acos(xi (1 - w^2) + w sqrt(1 - xi^2 (1 - w^2))).
+    // With w = cos(pi - angle) at the second sphere, min(alpha, 1 - alpha) / max(alpha, 1 - alpha), the angle
+    // at the first is pi - acos(xi (1 - w^2) + w sqrt(1 - xi^2 (1 - w^2))).
     QTest::newRow("xi = 0, alpha = 0.6") << 0.0 << 0.6 << 131.810315;            // acos(-2/3)
     QTest::newRow("xi = 0, alpha = 0.4") << 0.0 << 0.4 << 131.810315;            // the image goes to infinity
     QTest::newRow("xi = -0.5, alpha = 1") << -0.5 << 1.0 << 60.0;                // acos(1/2)
@@ -351,7 +351,8 @@ class TestCameraModel : public QObject {
     QVERIFY(!project(c, direction(end_deg + 1e-3, 1.0)));
   }
 
-  // alpha = 0.5 and beta = 1, or xi = 0, is the stereographic projection, 2 tan(angle / 2); so is omni with xi = 1.
+  // alpha = 0.5 and beta = 1, or xi = 0, is the stereographic projection, 2 tan(angle / 2); so is omni with
+  // xi = 1.
   void stereographicProjection_isAmongAllThree() {
     const CameraIntrinsics sphere = camera(CameraModel::DoubleSphere, {0.0, 0.5, 0.0, 0.0, 0.0});
     const CameraIntrinsics eucm = camera(CameraModel::Eucm, {0.5, 1.0, 0.0, 0.0, 0.0});

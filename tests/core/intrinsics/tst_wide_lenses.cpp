@@ -142,8 +142,8 @@ class TestWideLenses : public QObject {
     QVERIFY2(rms > 0.6 && rms < 1.3, qPrintable(text(rms)));
   }
 
-  // Like the lens of the first look at such a recording. As the only start, it led to a fit without a third of
-  // the circles, and a double sphere was selected.
+  // Like the lens of the first look at such a recording. As the only start, it led to a fit without a third
+  // of the circles, and a double sphere was selected.
   void equidistant_usesAllViews_ifTheGuessIsNearlyRight() {
     test::WideViews wide = wideViews(CameraModel::PinholeEquidistant, kRadius_m);
     wide.noise_px = 0.02;

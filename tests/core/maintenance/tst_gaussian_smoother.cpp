@@ -59,7 +59,8 @@ class TestGaussianSmoother : public QObject {
     QVERIFY(!smoother.at(100.0).has_value());
   }
 
-  // Sensors that are sampled separately: the other one's interpolated values do not hide a gap, and do not count.
+  // Sensors that are sampled separately: the other one's interpolated values do not hide a gap, and do not
+  // count.
   void gapsOfOneSensor_giveNothing() {
     GaussianSmoother smoother(kSigma_s);
     const Eigen::Vector3d rate(0.1, 0.2, 0.3), force(0.0, 0.0, 9.81), invented(9.0, 9.0, 9.0);

@@ -36,7 +36,8 @@ class TestLineDelay : public QObject {
   Q_OBJECT
 
  private slots:
-  // Half of them are read out from the last row to the first, as behind a mirror: their line delay is negative.
+  // Half of them are read out from the last row to the first, as behind a mirror: their line delay is
+  // negative.
   void rollingShutter_isFound_withAnHonestSigma() {
     constexpr unsigned kSeeds = 12;
     double delay = 0.0, extrinsics = 0.0;

@@ -116,8 +116,8 @@ class TestViewCost : public QObject {
     QVERIFY(std::abs(squares - expected) < 1e-9 * expected);
   }
 
-  // A step of the trajectory that moves the image by 1 px is predicted to 1e-3 px, for the longest views of one, two and three
-  // times, across a knot and away from it.
+  // A step of the trajectory that moves the image by 1 px is predicted to 1e-3 px, for the longest views of
+  // one, two and three times, across a knot and away from it.
   void posesAtTimes_predictSteps_data() {
     QTest::addColumn<double>("length_knots");
     QTest::addColumn<double>("middle_knots");

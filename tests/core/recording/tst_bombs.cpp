@@ -1,5 +1,5 @@
-// Small files that unpack to gigabytes, or whose lists take quadratic time: each reader refuses them before they cost more than
-// 10 s and 512 MB.
+// Small files that unpack to gigabytes, or whose lists take quadratic time: each reader refuses them before
+// they cost more than 10 s and 512 MB.
 #include "core/recording/aedat/packet_compression.h"
 #include "core/recording/aedat/packets.h"
 #include "core/recording/aedat/stream_description.h"
@@ -193,7 +193,8 @@ void defaultMessages(const fs::path& path) {
                     std::string(600'000, '0') + "'");
 }
 
-// The same in a list: `columns` are those of the table's rows, and `added` is another column with a long default value.
+// The same in a list: `columns` are those of the table's rows, and `added` is another column with a long
+// default value.
 void defaultRows(const fs::path& path, const std::string& table, const std::string& columns,
                  const std::string& values, const std::string& added) {
   const std::string long_text(500'000, 'a');

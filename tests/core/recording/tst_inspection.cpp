@@ -198,7 +198,8 @@ void TestInspection::eventFaults_areFound() {
   QVERIFY2(text.find("1 hot pixels") == 0 && text.find("(17, 23)") != std::string::npos, text.c_str());
 }
 
-// Pixels that rest for so long after each event, in bursts; and a few events of a hot pixel, which does not rest.
+// Pixels that rest for so long after each event, in bursts; and a few events of a hot pixel, which does not
+// rest.
 void TestInspection::shortestInterval_isTheRefractoryPeriod() {
   constexpr std::uint16_t kWidth = 40;
   std::mt19937 random(5);

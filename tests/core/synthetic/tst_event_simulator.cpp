@@ -202,7 +202,8 @@ class TestEventSimulator : public QObject {
     QVERIFY(std::abs(static_cast<double>(noisy.size()) / static_cast<double>(steady.size()) - 1.0) < 0.05);
   }
   // No more than the limit in any interval, in order, and none later than the longest wait.
-  // After each event the level moves on by the reset's length times the slope, which no further event reports.
+  // After each event the level moves on by the reset's length times the slope, which no further event
+  // reports.
   void reset_costsEventsOfFastEdges() {
     const auto countOf = [](double frequency_hz, double reset_s) {
       Scenario scenario = slidingScenario(0.6, 0.2);

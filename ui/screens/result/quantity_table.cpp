@@ -105,7 +105,8 @@ void QuantityTable::setGroups(std::vector<ParameterGroup> groups, bool compared)
   fitColumns();
 }
 
-// Measures the visible texts: a header that resizes to contents asks the style for each item's size at every layout.
+// Measures the visible texts: a header that resizes to contents asks the style for each item's size at every
+// layout.
 void QuantityTable::fitColumns() {
   const QFontMetrics metrics(font());
   const int margin_px = 2 * metrics.horizontalAdvance('0');

@@ -201,7 +201,8 @@ class TestCheckCalibration : public QObject {
     QVERIFY(checked.check.findings.front().numbers.front().before.sigma > 0.0);
   }
 
-  // Cameras of one chip whose lenses were estimated separately, to compare them: the old result has two lenses.
+  // Cameras of one chip whose lenses were estimated separately, to compare them: the old result has two
+  // lenses.
   void cameraThatSharesItsSensor_hasNoPriorOfItsOwn() {
     SimulatedPass first = simulatePass(10.0, "davis346_frames");
     first.session.options.report.edit().split_half_check = false;

@@ -93,7 +93,8 @@ QStringList stopEverywhere(const Work& work) {
   QStringList stages;
   for (const double part : {0.01, 0.04, 0.1, 0.25, 0.4, 0.6, 0.75, 0.85, 0.92, 0.97}) {
     Stop stop = stopAfter(work, part * whole_s);
-    if (!stop.cancelled) {  // it was finished before: other programs, which slowed the measured runs, have ended
+    if (!stop.cancelled) {  // it was finished before: other programs, which slowed the measured runs, have
+                            // ended
       whole_s = std::min(whole_s, wholeTime_s(work));
       stop = stopAfter(work, part * whole_s);
     }

@@ -108,8 +108,8 @@ class TestMirroredImages : public QObject {
     QCOMPARE(outcome.repair, QString());
   }
 
-  // Gravity dominates the accelerations, so that their misfit is small: the sign of the scale is decisive. If it is
-  // not clear, the result is not ok.
+  // Gravity dominates the accelerations, so that their misfit is small: the sign of the scale is decisive. If
+  // it is not clear, the result is not ok.
   void slowMotion_isNotOk() {
     for (const char* const scenario : {"slow", "small_motion"}) {
       SimulatedPass mirrored = rig(scenario);
@@ -310,7 +310,8 @@ class TestMirroredImages : public QObject {
     QVERIFY(outcomeOf(hybrid).repair.endsWith("accelerometer_axes=-x,-y,-z"));
   }
 
-  // A lens alone has no motion to contradict it: it is that of the image that the driver delivers, or of the reversed one.
+  // A lens alone has no motion to contradict it: it is that of the image that the driver delivers, or of the
+  // reversed one.
   void lensAlone_isThatOfTheImage() {
     for (const Mirroring how : kAll) {
       SimulatedPass mirrored = single_;

@@ -1,11 +1,12 @@
-// NumPy's arrays of events. The format is that of numpy/numpy, numpy/lib/format.py (a8154c6); who writes what:
+// NumPy's arrays of events. The format is that of numpy/numpy, numpy/lib/format.py (a8154c6); who writes
+// what:
 //   neuromorphs/tonic, tonic/datasets/dvs_lips.py (09c528c): structured x, y, p, t;
 //   82magnolia/n_imagenet, real_cnn_model/data/imagenet.py (a0b1f73): event_data of x, y, t, p in archives;
 //   open-neuromorphic/expelliarmus, README.md: structured t, x, y, p in us;
-//   uzh-rpg/rpg_vid2e, esim_torch/scripts/generate_events.py (ecbb11a): numbered archives of x, y, t, p in ns;
-//   better-flow/evimo, docs_sphinx/source/ground-truth-format.md (6800ea9): EVIMO's rows of t, x, y, p and pickled meta,
-//   EVIMO2's dataset_events_t, _xy and _p;
-//   dv's Python package hands out timestamp, x, y, polarity with padding (seen in programs that use it, not in its source).
+//   uzh-rpg/rpg_vid2e, esim_torch/scripts/generate_events.py (ecbb11a): numbered archives of x, y, t, p in
+//   ns; better-flow/evimo, docs_sphinx/source/ground-truth-format.md (6800ea9): EVIMO's rows of t, x, y, p
+//   and pickled meta, EVIMO2's dataset_events_t, _xy and _p; dv's Python package hands out timestamp, x, y,
+//   polarity with padding (seen in programs that use it, not in its source).
 #include "core/base/error.h"
 #include "core/recording/conversion.h"
 #include "tests/core/recording/numpy/numpy_builder.h"
