@@ -1,53 +1,60 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Panel with an error, its place and advice: above the screens, never covering them.
+// Cards about what has happened, until they are dismissed: errors above the screens, never covering them, and
+// exports below, which keep their places.
 #pragma once
 
 #include "ui/jobs/job_runner.h"
 
 #include <QFrame>
+#include <QIcon>
 #include <QStringList>
 
+class QGridLayout;
 class QLabel;
 
 namespace evical::ui {
 
 class RepairButton;
 
-class ErrorPanel : public QFrame {
+// An icon, a heading, two texts, and a button to close it, as Esc does.
+class NoticeCard : public QFrame {
+ public:
+  QString text() const;
+
+ protected:
+  NoticeCard(const QString& name, QWidget* parent);
+  virtual QIcon sign() const = 0;
+  void present();  // shows the card with its texts; empty ones are hidden
+  void changeEvent(QEvent* event) override;
+  void keyPressEvent(QKeyEvent* event) override;
+
+  QGridLayout* grid_;  // columns: icon, texts, actions, button to close
+  QLabel *title_, *body_, *details_;
+
+ private:
+  void showIcon();
+
+  QLabel* icon_;
+};
+
+// An error, its place and advice.
+class ErrorPanel : public NoticeCard {
   Q_OBJECT
 
  public:
   explicit ErrorPanel(QWidget* parent = nullptr);
 
   void showError(const QString& what_was_tried, const JobError& error);
-  void dismiss();
-  QString text() const;
 
  signals:
   void repairRequested(const evical::Repair& repair);
 
  protected:
-  void changeEvent(QEvent* event) override;
-  void keyPressEvent(QKeyEvent* event) override;
+  QIcon sign() const override;
 
  private:
-  void showIcon();
-
-  QLabel* icon_;
-  QLabel* title_;
-  QLabel* problem_;
-  QLabel* advice_;
   RepairButton* repair_;
 };
-
-}  // namespace evical::ui
-
-// Notice of an export: its folder, its files, and what was refused. Below the screens, which keep their
-// places, until it is dismissed.
-
-class QLabel;
-
-namespace evical::ui {
 
 struct ExportOutcome {
   QString folder;
@@ -58,26 +65,23 @@ struct ExportOutcome {
   QString title = {};     // title if something else than a result was written
 };
 
-class ExportNotice : public QFrame {
+// An export: its folder, its files, and what was refused.
+class ExportNotice : public NoticeCard {
   Q_OBJECT
 
  public:
   explicit ExportNotice(QWidget* parent = nullptr);
 
   void showOutcome(const ExportOutcome& outcome);
-  QString text() const;
 
  protected:
-  void changeEvent(QEvent* event) override;
-  void keyPressEvent(QKeyEvent* event) override;
+  QIcon sign() const override;
 
  private:
   void openFolder();
-  void showIcon();
 
   QString folder_;
   bool whole_ = true;  // nothing was refused, and all values agree
-  QLabel *icon_, *title_, *place_, *details_;
 };
 
 }  // namespace evical::ui

@@ -171,7 +171,7 @@ void MainWindow::wireDocument() {
   connect(&workbench_.lens, &LensDocument::aimChanged, this, &MainWindow::showRejections);
   connect(&workbench_.document, &CalibrationDocument::sessionReplaced, this, [this] {
     steps_->reset();
-    error_->dismiss();
+    error_->hide();
     exported_->hide();
   });
   connect(pages_.residuals, &ResidualsScreen::windowWanted, this, [this](int camera, double time_s) {
@@ -184,7 +184,7 @@ void MainWindow::wireDocument() {
   connect(error_, &ErrorPanel::repairRequested, this, &MainWindow::repair);
   connect(files_, &SessionFiles::failed, this, &MainWindow::showProblem);
   connect(files_, &SessionFiles::opened, this, [this] {
-    error_->dismiss();
+    error_->hide();
     showScreen(workbench_.document.last().run ? "result" : "recording");
   });
   connect(files_, &SessionFiles::exported, this, [this](const ExportOutcome& outcome) {
@@ -227,7 +227,7 @@ void MainWindow::wireParameters() {
 void MainWindow::wireJobs() {
   JobRunner& runner = workbench_.runner;
   connect(&runner, &JobRunner::started, this, [this](const QString& title) {
-    error_->dismiss();
+    error_->hide();
     exported_->hide();
     log_->addHeading(title);
     showState();
@@ -329,7 +329,7 @@ void MainWindow::cancel() {
 void MainWindow::showReading(const QString& recording) {
   reading_ = recording;
   pages_.recording->setReading(recording);
-  if (!recording.isEmpty()) error_->dismiss();
+  if (!recording.isEmpty()) error_->hide();
   showState();
   if (!recording.isEmpty()) showScreen("recording");
   if (recording.isEmpty() && !workbench_.document.hasSession()) showScreen("start");
