@@ -26,7 +26,7 @@ std::vector<CameraPose> cameraPoses(const CameraData& camera, const Board& board
                                     Initialisation& result) {
   CameraPoses found = estimateCameraPoses(camera, board, options, context);
   checkViews(camera, found, options);
-  result.steps.push_back({"camera poses", camera.name,
+  result.steps.push_back({nameOf(UsualStep::CameraPoses), camera.name,
                           fmt::format("{} of {} views, points fit to {:.3f} px (median)", found.poses.size(),
                                       camera.observations.views.size(), found.median_reprojection_px),
                           found.median_reprojection_px, 0.0});
@@ -93,7 +93,8 @@ AlignedCamera bestAlignment(const CameraData& camera, const std::vector<CameraPo
 }
 
 // Swaps and drops poses that contradict the gyroscope, and repeats the hand-eye calibration without them.
-void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t start_ns,
+// True if that is a step of the result; false if too few remain.
+bool settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t start_ns,
                  const GyroRotation& gyro, const InitialisationOptions& options, AlignedCamera& aligned,
                  Initialisation& result) {
   constexpr int kRounds = 2;
@@ -108,7 +109,7 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
     if (!again || static_cast<int>(next.poses.size()) < options.min_views) {
       result.warnings.push_back(camera.name +
                                 ": rotations of camera and gyroscope contradict each other in most views");
-      return;
+      return false;
     }
     next.hand_eye = *again;
     aligned = std::move(next);
@@ -117,11 +118,12 @@ void settlePoses(const CameraData& camera, const ImuData& imu, std::int64_t star
     if (consistency.swapped == 0 && consistency.dropped == 0) break;
   }
   const auto views = static_cast<int>(aligned.poses.size()) + dropped;
-  result.steps.push_back({"planar poses", camera.name,
+  result.steps.push_back({nameOf(UsualStep::PlanarPoses), camera.name,
                           fmt::format("the gyroscope swapped {} views to the plane's other pose and "
                                       "contradicts {} of {}",
                                       swapped, dropped, views),
                           static_cast<double>(dropped) / views, 0.0});
+  return true;
 }
 
 bool isClear(const std::vector<TimeOffsetPeak>& peaks, const InitialisationOptions& options) {
@@ -232,18 +234,18 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
       {camera.name, peaks.front().correlation,
        compareRotations(aligned.poses, gyro, aligned.hand_eye.time_offset_s, options),
        findClockStep(offsetsByParts(aligned.poses, gyro, aligned.hand_eye, options))});
-  settlePoses(camera, imu, input.start_ns, gyro, options, aligned, result);
-  if (result.steps.back().name == "planar poses") result.steps.back().duration_s = stopwatch.restart_s();
+  if (settlePoses(camera, imu, input.start_ns, gyro, options, aligned, result))
+    result.steps.back().duration_s = stopwatch.restart_s();
   const RelativeRotation& hand_eye = aligned.hand_eye;
   warnOfPeaks(camera, peaks, hand_eye.time_offset_s, options, result);
   const double next = peaks.size() > 1 ? peaks[1].correlation : 0.0;
   result.steps.push_back(
-      {"time offset", camera.name,
+      {nameOf(UsualStep::TimeOffset), camera.name,
        fmt::format("{:.4f} s, correlation {:.3f}, peak {:.0f} ms wide, next best {:.3f}",
                    hand_eye.time_offset_s, peaks.front().correlation, peaks.front().width_s * 1e3, next),
        1.0 - peaks.front().correlation, peaks.front().correlation - next, offset_s});
   result.steps.push_back(
-      {"camera-IMU rotation", camera.name,
+      {nameOf(UsualStep::CameraImuRotation), camera.name,
        fmt::format("{} pairs agree to {:.3f} deg, second axis {:.2f} of the first", hand_eye.pairs,
                    hand_eye.residual_rad * kDegPerRad, hand_eye.axis_ratio),
        hand_eye.residual_rad, hand_eye.axis_ratio, rotation_s});

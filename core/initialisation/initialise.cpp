@@ -163,7 +163,7 @@ void alignTranslations(const CalibrationInput& input, const StatedSigns& stated,
   const bool settled = refineBoardScale(tracksOf(input, cameras), input, state.world_from_imu_rotation,
                                         options, context, gravity);
   result.steps.push_back(
-      {"gravity and translation", "",
+      {nameOf(UsualStep::GravityAndTranslation), "",
        fmt::format("positions agree to {:.2f} mm in {} of {} views, accelerations to {:.3f} m/s^2",
                    gravity.position_rms_m * 1e3, gravity.views - gravity.outlying_views, gravity.views,
                    gravity.acceleration_rms_m_s2),

@@ -10,13 +10,22 @@
 #include "core/initialisation/rotation_agreement.h"
 #include "core/initialisation/time_offset.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace evical {
 
+// Steps of every rig with an IMU, in their order; some rigs have further ones.
+enum class UsualStep { CameraPoses, PlanarPoses, TimeOffset, CameraImuRotation, GravityAndTranslation };
+inline constexpr std::array kUsualSteps = {"camera poses", "planar poses", "time offset",
+                                           "camera-IMU rotation", "gravity and translation"};
+constexpr const char* nameOf(UsualStep step) {
+  return kUsualSteps[static_cast<std::size_t>(step)];
+}
+
 struct InitialisationStep {
-  std::string name;     // "camera poses", "time offset", ...
+  std::string name;
   std::string subject;  // its sensor or board; empty: all of them
   std::string result;   // its main figures as text
   double residual = 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/steps_panel.h"
 
+#include "core/initialisation/initialise.h"
 #include "ui/theme/theme.h"
 
 #include <QEvent>
@@ -18,9 +19,6 @@ namespace {
 // Minimum time between changes of text: they trigger a layout of the panel, and faster ones are unreadable.
 constexpr double kReadable_s = 0.25;
 
-// Names of core (CalibrationObserver); rows for others are added when they start.
-const QStringList kInitialisationSteps = {"camera poses", "planar poses", "time offset",
-                                          "camera-IMU rotation", "gravity and translation"};
 // Stages that only some runs have get their row when they start.
 bool isInEveryRun(const StageRow& row) {
   return shareOf(row, RunStart::KnownIntrinsics) > 0.0;
@@ -92,7 +90,8 @@ void StepsPanel::addStages() {
     if (!isInEveryRun(stage)) continue;
     addRow(stage.name, tr(stage.title));
     if (stage.stage != CalibrationStage::Initialise) continue;
-    for (const QString& step : kInitialisationSteps) addRow(step, capitalised(step), stage.stage);
+    // Rows for others are added when they start.
+    for (const char* const step : kUsualSteps) addRow(step, capitalised(step), stage.stage);
   }
 }
 
@@ -235,7 +234,7 @@ void StepsPanel::finish(JobOutcome outcome) {
 
 // Removes steps that this kind of rig does not need.
 void StepsPanel::dropUnusedSteps() {
-  for (const QString& step : kInitialisationSteps) {
+  for (const char* const step : kUsualSteps) {
     const auto found = rows_.find(step);
     if (found == rows_.end() || found->second->state() != StepState::Pending) continue;
     delete found->second;
@@ -255,7 +254,7 @@ void StepsPanel::setRun(const CalibrationRun& run) {
   }
   StepRow* const detect = row(CalibrationStage::Detect);
   std::size_t views = 0, windows = 0;
-  for (const BoardObservations& camera : run.pass.cameras) {
+  for (const BoardObservations& camera : run.detections.cameras) {
     views += camera.views.size();
     windows += camera.windows.size();
   }
