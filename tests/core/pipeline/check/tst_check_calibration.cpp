@@ -96,6 +96,32 @@ class TestCheckCalibration : public QObject {
     }
   }
 
+  // Its lens was estimated separately (same_sensor_check), but the session has it once.
+  void secondCameraOfASensor_hasNoPriorOfItsOwn() {
+    NamedResult before = before_;
+    before.cameras.push_back(before.cameras.front());
+    before.cameras.back().name = "second";
+    CalibrationResult result = *before.result;
+    result.state.cameras.push_back(result.state.cameras.front());
+    UncertaintyReport& report = result.uncertainty;
+    report.cameras.push_back(report.cameras.front());
+    report.columns.clear();
+    for (const std::size_t camera : {0, 1})
+      for (std::size_t k = 0; k < 4; ++k)
+        report.columns.push_back({QuantityOwner::Camera, camera, QuantityId::Intrinsics, k});
+    report.standard_deviations = Eigen::VectorXd::Constant(8, 0.1);
+    report.correlation = Eigen::MatrixXd::Identity(8, 8);
+    before.result = std::make_shared<const CalibrationResult>(std::move(result));
+    Session session = session_;
+    session.cameras.push_back(session.cameras.front());
+    session.cameras.back().name = "second";
+    session.cameras.back().same_sensor_as = session.cameras.front().name;
+    session.cameras.back().intrinsics.reset();
+    const Session weighed = withPriorOf(before, session);
+    QVERIFY(weighed.cameras[0].intrinsics_uncertainty && weighed.cameras[0].prior.rotation);
+    QVERIFY(!weighed.cameras[1].intrinsics_uncertainty && !weighed.cameras[1].prior.rotation);
+  }
+
   void changedQuantity_isNamedWithItsSize_data() {
     QTest::addColumn<QString>("quantity");
     QTest::addColumn<double>("size");
