@@ -15,7 +15,7 @@
 
 namespace evical {
 
-struct ExportedFiles {
+struct [[nodiscard]] ExportedFiles {
   std::vector<FileContent> files;         // paths relative to the output folder: "kalibr/imu.yaml"
   std::vector<std::string> notes;         // remarks for users
   std::vector<std::string> refused = {};  // targets without files, each with the reason

@@ -42,16 +42,23 @@ class RecordingReader {
 // Header lines that replace those of text tables, by the stream's name: "t_ns,-,ax,ay,az,gx,gy,gz".
 using ColumnNames = std::map<std::string, std::string>;
 
-// Opens a file or folder by its content. Throws CalibrationError (BadInput) if `path` cannot be
+// Opens a file or folder by its content.
+//
+//   const auto reader = openRecording("recording.bag");
+//   for (Packet packet; reader->read(packet);)
+//     for (const Event& event : packet.events) use(event);
+//
+// Throws CalibrationError (BadInput) if `path` cannot be
 // read, or if `names` do not belong to text tables.
-std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path,
-                                               const ColumnNames& names = {});
+[[nodiscard]] std::unique_ptr<RecordingReader> openRecording(const std::filesystem::path& path,
+                                                             const ColumnNames& names = {});
 
 // Index of the stream of this name and one of these types; of several the first type's. Throws
 // CalibrationError (BadInput) that lists the existing ones.
-std::size_t findStream(const RecordingReader& reader, const std::string& name,
-                       std::span<const StreamType> types);
-inline std::size_t findStream(const RecordingReader& reader, const std::string& name, StreamType type) {
+[[nodiscard]] std::size_t findStream(const RecordingReader& reader, const std::string& name,
+                                     std::span<const StreamType> types);
+[[nodiscard]] inline std::size_t findStream(const RecordingReader& reader, const std::string& name,
+                                            StreamType type) {
   return findStream(reader, name, std::span(&type, 1));
 }
 

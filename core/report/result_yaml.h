@@ -28,7 +28,7 @@ struct SensorDescription {
 };
 
 // Self-contained result. The numbers are final and shared by all users.
-struct NamedResult {
+struct [[nodiscard]] NamedResult {
   std::string reference;                         // name of a sensor
   std::vector<SensorDescription> cameras, imus;  // as those of the state
   std::vector<std::string> boards = {"board"};   // the world's, then the further ones

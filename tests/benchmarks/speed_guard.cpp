@@ -194,7 +194,7 @@ class Stages {
   }
 
   // A calibration of frames and IMU, from measured corners of tags.
-  void corners() { calibrate(*corners_, context_); }
+  void corners() { static_cast<void>(calibrate(*corners_, context_)); }
 
   // The program with all that it reads and writes.
   void shortRun() {

@@ -16,7 +16,7 @@ namespace evical {
 class BoardTracker;
 class FrontEndObserver;
 
-struct DetectionResult {
+struct [[nodiscard]] DetectionResult {
   std::int64_t start_ns = 0;  // first event or sample of the session's streams
   std::vector<BoardObservations> cameras;
   std::vector<CameraLens> lenses;  // by camera: used for the observations

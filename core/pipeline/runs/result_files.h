@@ -55,8 +55,8 @@ std::vector<ExportCheck> checkExports(const std::filesystem::path& folder,
 void writeDetectionFiles(const std::filesystem::path& folder, const Session& session,
                          const DetectionResult& detections, const std::string& log);
 
-// Writes result.yaml with status failed and the reason, a report of the data in `pass`, and log.txt; only if
-// the folder exists.
+// Writes result.yaml with status failed and the reason, a report of the data in `detections`, and log.txt;
+// only if the folder exists.
 void writeFailure(const std::filesystem::path& folder, const Session& session, const QualityWarning& cause,
                   const std::string& version, const std::string& log, const DetectionResult& detections = {});
 

@@ -1,11 +1,10 @@
 // Session: recording, board, sensors, and prior knowledge about them. One YAML file.
 #pragma once
 
-#include "core/data/calibration_priors.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/imu_units.h"
 #include "core/data/mirroring.h"
-#include "core/geometry/measured_length.h"
+#include "core/geometry/board.h"
 #include "core/pipeline/session/calibration_options.h"
 
 #include <array>
@@ -66,7 +65,7 @@ struct SessionBoard : AdditionalBoard {
   std::optional<MeasuredLength> measured = {};
 };
 
-struct Session {
+struct [[nodiscard]] Session {
   std::filesystem::path source;                             // the file it was read from
   std::filesystem::path recording;                          // absolute, or relative to the working directory
   std::vector<std::filesystem::path> more_recordings = {};  // of a blinking board: one for each of its poses
