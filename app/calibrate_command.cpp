@@ -12,7 +12,7 @@
 #include "core/pipeline/detection/saved_detections.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/runs/result_files.h"
-#include "core/pipeline/runs/unfinished_run.h"
+#include "core/pipeline/runs/saved_run.h"
 #include "core/report/result_table.h"
 
 #include <fmt/format.h>

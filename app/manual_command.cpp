@@ -1,11 +1,12 @@
 // The manual: pages for the program and each command, and bash completion, generated from the definitions of
 // --help. For the build only, so help does not list it.
-#include "app/bash_completion.h"
+#include "app/manual_command.h"
+
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/manual_page.h"
-#include "app/option_value.h"
 #include "app/version.h"
+
 #include "core/base/atomic_file.h"
 #include "core/base/file_places.h"
 #include "core/pipeline/session/calibration_options.h"
@@ -15,10 +16,88 @@
 
 #include <filesystem>
 #include <memory>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evical {
+namespace {
+
+// Without a match, bash completes file names, which most options and arguments take.
+constexpr std::string_view kBegin = R"(# Completion of evical in bash, made from its help.
+_evical() {
+  local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command= word options= words=
+  for word in "${COMP_WORDS[@]:1:COMP_CWORD - 1}"; do
+    [[ $word == -* ]] || { command=$word; break; }
+  done
+  # bash splits "--option=value" into three words.
+  [[ $current != = ]] || current=
+  if [[ $before == = && $COMP_CWORD -gt 1 ]]; then before=${COMP_WORDS[COMP_CWORD - 2]}; fi
+  case $command in
+)";
+
+constexpr std::string_view kEnd = R"(  esac
+  COMPREPLY=()
+  if [[ -n $words ]]; then
+    COMPREPLY=($(compgen -W "$words" -- "$current"))
+  elif [[ $current == -* ]]; then
+    COMPREPLY=($(compgen -W "$options" -- "$current"))
+  fi
+  if [[ ${COMPREPLY[*]} == *= ]]; then compopt -o nospace 2>/dev/null; fi
+}
+complete -o bashdefault -o default -F _evical evical
+)";
+
+std::vector<std::string> namesOf(const CLI::Option& option) {
+  std::vector<std::string> names;
+  if (option.get_group().empty()) return names;
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::vector<std::string> namesOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : namesOf(*option)) names.push_back(name);
+  return names;
+}
+
+std::string caseOf(const CLI::App& command) {
+  std::string text =
+      fmt::format("    {})\n      options=\"{}\"\n", command.get_name(), fmt::join(namesOf(command), " "));
+  text += "      case $before in\n";
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->check_lname("set"))
+      text += "        --set) words=$settings ;;\n";
+    else if (const OptionValue value = valueOf(*option); !value.choices.empty())
+      text += fmt::format("        {}) words=\"{}\" ;;\n", fmt::join(namesOf(*option), "|"),
+                          fmt::join(value.choices, " "));
+  }
+  return text + "      esac\n      ;;\n";
+}
+
+std::string settings() {
+  std::string text = "  local settings=\"";
+  for (const OptionRow& row : documentedOptions()) text += fmt::format("\n    {}=", row.name);
+  return text + "\"\n";
+}
+
+}  // namespace
+
+std::string bashCompletion(const CLI::App& program, const std::vector<const CLI::App*>& commands) {
+  std::vector<std::string> first = namesOf(program);
+  std::string text(kBegin);
+  text.insert(text.find("  case $command"), settings());
+  for (const CLI::App* command : commands) {
+    first.push_back(command->get_name());
+    text += caseOf(*command);
+  }
+  text += fmt::format("    \"\") words=\"{}\" ;;\n", fmt::join(first, " "));
+  return text + std::string(kEnd);
+}
+
 namespace {
 
 ManualEntry entryOf(const CLI::Option& option) {
@@ -124,6 +203,23 @@ void addManualCommand(Command& app, int& exit_code) {
     writeFilesWhole(files);
     exit_code = kDone;
   });
+}
+
+// CLI11 combines type and checks: "TEXT:{dark,bright}", "INT:INT in [1 - 256]".
+OptionValue valueOf(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  OptionValue value{type.substr(0, type.find(':')), "", {}};
+  const std::size_t open = type.find('{'), close = type.rfind('}');
+  if (open != std::string::npos && close != std::string::npos) {
+    std::istringstream words(type.substr(open + 1, close - open - 1));
+    for (std::string word; std::getline(words, word, ',');) value.choices.push_back(word);
+    value.word = fmt::format("{}", fmt::join(value.choices, "|"));
+  }
+  const std::size_t begin = type.find(" in ["), middle = type.find(" - ", begin), end = type.find(']', begin);
+  if (begin != std::string::npos && middle != std::string::npos && end != std::string::npos)
+    value.range = fmt::format("{} to {}", type.substr(begin + 5, middle - begin - 5),
+                              type.substr(middle + 3, end - middle - 3));
+  return value;
 }
 
 }  // namespace evical

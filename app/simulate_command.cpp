@@ -3,7 +3,6 @@
 #include "app/console.h"
 #include "app/output.h"
 #include "core/base/number.h"
-#include "core/pipeline/simulate/drive_simulation.h"
 #include "core/pipeline/simulate/simulation.h"
 #include "core/recording/recording_writer.h"
 #include "core/synthetic/drive_scenario.h"

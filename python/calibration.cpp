@@ -7,7 +7,6 @@
 #include "core/pipeline/runs/result_files.h"
 #include "core/pipeline/runs/run_data.h"
 #include "core/pipeline/runs/saved_run.h"
-#include "core/pipeline/runs/unfinished_run.h"
 #include "core/report/result_yaml.h"
 #include "python/arrays.h"
 #include "python/bindings.h"

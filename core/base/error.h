@@ -1,13 +1,23 @@
 // The exception of core for user-visible errors: what happened, where, and what to do.
 #pragma once
 
-#include "core/base/repair.h"
-
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 namespace evical {
+
+// The setting that fixes a problem, as data: a command line can print it and a window offer it.
+
+struct Repair {
+  // An option, "optimisation.model.gyroscope_rotation", a key of a session's IMU,
+  // "imus.left_imu.acceleration_unit", or "time_range_s": accepted by setInSession
+  // (core/pipeline/session/session.h).
+  std::string key, value;
+
+  bool operator==(const Repair&) const = default;
+  std::string text() const { return key + "=" + value; }
+};
 
 enum class ErrorKind {
   BadInput,           // invalid usage, session or recording: exit code 2, no files written

@@ -1,7 +1,7 @@
 // Result of a calibration: the state, its uncertainty, and how well it explains the data.
 #pragma once
 
-#include "core/base/repair.h"
+#include "core/base/error.h"
 #include "core/data/calibration_state.h"
 #include "core/data/calibration_status.h"
 #include "core/data/quality_warning.h"

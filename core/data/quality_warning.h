@@ -3,7 +3,7 @@
 
 #include "core/data/calibration_status.h"
 
-#include "core/base/repair.h"
+#include "core/base/error.h"
 
 #include <algorithm>
 #include <array>

@@ -5,8 +5,8 @@
 // the batch.
 #pragma once
 
-#include "core/data/calibration_priors.h"
 #include "core/data/calibration_result.h"
+#include "core/data/calibration_setup.h"
 #include "core/data/calibration_state.h"
 #include "core/numerics/angles.h"
 

@@ -1,4 +1,3 @@
-#include "core/export/basalt_text.h"
 
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"

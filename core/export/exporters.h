@@ -2,6 +2,10 @@
 #pragma once
 
 #include "core/export/export_target.h"
+#include "core/export/rig.h"
+
+#include <string>
+#include <vector>
 
 namespace evical {
 
@@ -28,5 +32,15 @@ ExportedFiles exportM3ed(const NamedResult& result);
 ExportedFiles exportEvimo2(const NamedResult& result);
 ExportedFiles exportTumVie(const NamedResult& result);
 ExportedFiles exportNumpy(const NamedResult& result);
+
+// Basalt's calibration.json, which TUM-VIE also uses.
+
+// Text for all cameras, in this order, with supported lens models. `more`: further members, each after a
+// comma. Throws CalibrationError (BadInput) without an IMU.
+std::string basaltCalibration(const Rig& rig, const char* program, ExportNotes& notes,
+                              const std::string& more = {});
+
+// Explanations of its keys.
+std::vector<std::string> basaltMeanings(const RigImu& imu);
 
 }  // namespace evical

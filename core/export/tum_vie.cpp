@@ -1,5 +1,4 @@
 #include "core/base/error.h"
-#include "core/export/basalt_text.h"
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"

@@ -1,6 +1,5 @@
 #include "core/frames/board_finder.h"
 
-#include "core/frames/pattern_finder.h"
 #include "core/frames/plane_map.h"
 
 #include <opencv2/core.hpp>

@@ -1,7 +1,6 @@
 // Measurement of circles near their expected places: ellipses fitted to their edges.
 #pragma once
 
-#include "core/frames/found_point.h"
 #include "core/frames/frame_options.h"
 #include "core/frames/gray_image.h"
 #include "core/frames/plane_map.h"

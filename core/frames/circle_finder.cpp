@@ -1,5 +1,5 @@
+#include "core/frames/board_finder.h"
 #include "core/frames/circle_edges.h"
-#include "core/frames/pattern_finder.h"
 #include "core/frames/picture_view.h"
 #include "core/frames/plane_map.h"
 #include "core/geometry/point_lattice.h"

@@ -1,7 +1,6 @@
 // Measurement of corners near their expected places.
 #pragma once
 
-#include "core/frames/found_point.h"
 #include "core/frames/frame_options.h"
 #include "core/frames/gray_image.h"
 #include "core/frames/plane_map.h"
@@ -75,5 +74,16 @@ Eigen::Vector2d shiftByBending(const GrayImage& image, const Eigen::Vector2d& at
 // as in the pattern.
 FoundPoints measureCorners(const GrayImage& image, const Board& board, const CornerPattern& pattern,
                            const PlaneMap& map, double gate_px, const FrameOptions& options);
+
+// Measurement of corners in pictures with systematic differences between pixels: counts of flashes, which
+// depend on each pixel's thresholds.
+
+// The smoothed brightness has a saddle where two dark and two bright fields meet. It is at the corner for any
+// tones, since a half turn about the corner leaves the pattern unchanged. Empty if there is no saddle within
+// `reach_px` of the start. `noise_sigma` is a pixel's noise, correlated over `correlated_px`, which is the
+// enlargement factor of an enlarged picture.
+std::optional<MeasuredCorner> measureSaddle(const GrayImage& image, const Eigen::Vector2d& start_px,
+                                            double sigma_px, double reach_px, double noise_sigma,
+                                            double correlated_px);
 
 }  // namespace evical

@@ -1,8 +1,8 @@
 #include "core/frames/flash_finder.h"
 
+#include "core/frames/board_finder.h"
 #include "core/frames/brightness.h"
-#include "core/frames/pattern_finder.h"
-#include "core/frames/saddle_measurement.h"
+#include "core/frames/corner_measurement.h"
 
 #include <Eigen/LU>
 

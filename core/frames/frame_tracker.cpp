@@ -1,6 +1,6 @@
 #include "core/frames/frame_tracker.h"
 
-#include "core/frames/pattern_finder.h"
+#include "core/frames/board_finder.h"
 #include "core/frames/views_from_frames.h"
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -42,5 +43,27 @@ std::vector<ReadPoint> agreeingPoints(const std::vector<ReadPoint>& points, doub
 
 // The map from points; empty if there are too few. `step_m` as for PlaneMap.
 std::optional<PlaneMap> mapOf(const std::vector<ReadPoint>& points, double step_m);
+
+// A detected point of the board (Board::point_m) in one frame. Pixels: the centre of the top-left pixel is
+// (0, 0).
+
+struct FoundPoint {
+  int point = 0;
+  Eigen::Vector2d at_px = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();
+  Eigen::Matrix2d ellipse_px2 =
+      Eigen::Matrix2d::Zero();  // d^T ellipse^-1 d = 1 on a circle's edge; 0: a corner
+};
+
+// In order of their indices, each at most once.
+using FoundPoints = std::vector<FoundPoint>;
+
+// Removes points that are not in the other list.
+inline void keepThoseOf(const FoundPoints& other, FoundPoints& points) {
+  std::erase_if(points, [&](const FoundPoint& point) {
+    return !std::binary_search(other.begin(), other.end(), point,
+                               [](const FoundPoint& a, const FoundPoint& b) { return a.point < b.point; });
+  });
+}
 
 }  // namespace evical

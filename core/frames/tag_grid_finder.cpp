@@ -1,5 +1,5 @@
+#include "core/frames/board_finder.h"
 #include "core/frames/corner_measurement.h"
-#include "core/frames/pattern_finder.h"
 #include "core/frames/picture_view.h"
 #include "core/frames/plane_map.h"
 #include "core/frames/tag_layout.h"

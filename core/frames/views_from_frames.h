@@ -2,7 +2,7 @@
 // blurred views.
 #pragma once
 
-#include "core/frames/found_point.h"
+#include "core/frames/plane_map.h"
 
 #include "core/data/board_observations.h"
 

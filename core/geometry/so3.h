@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <cmath>
+
 namespace evical {
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& v);  // skew(v) w = v x w
@@ -39,5 +41,17 @@ struct BestRotation {
 
 // Rotation for the sum of weight * target * source^T over all pairs; with determinant -1 the best reflection.
 BestRotation bestRotation(const Eigen::Matrix3d& sum_of_products, double determinant = 1.0);
+
+// Gravity's direction as two small angles.
+
+// The two world directions of gravity's tilt in the report ("gravity.direction.1", ".2").
+inline Eigen::Matrix<double, 3, 2> gravityTilts(const Eigen::Vector3d& gravity) {
+  const Eigen::Vector3d down = gravity.normalized();
+  const Eigen::Vector3d seed = std::abs(down.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
+  Eigen::Matrix<double, 3, 2> tilts;
+  tilts.col(0) = (seed - seed.dot(down) * down).normalized();
+  tilts.col(1) = down.cross(tilts.col(0));
+  return tilts;
+}
 
 }  // namespace evical

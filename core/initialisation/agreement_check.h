@@ -2,8 +2,8 @@
 // are tested, and CalibrationFailed is thrown with the most probable one: a result would have large errors.
 #pragma once
 
+#include "core/base/error.h"
 #include "core/base/progress.h"
-#include "core/base/repair.h"
 #include "core/data/calibration_setup.h"
 #include "core/data/unfit_samples.h"
 #include "core/initialisation/gravity_alignment.h"

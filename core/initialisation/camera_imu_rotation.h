@@ -2,7 +2,7 @@
 //   log(imu rotation over the pair) = R_ic log(camera rotation over the pair) + bias * duration.
 #pragma once
 
-#include "core/data/calibration_priors.h"
+#include "core/data/calibration_setup.h"
 #include "core/initialisation/camera_poses.h"
 
 #include <Eigen/Geometry>

@@ -2,7 +2,7 @@
 // relative to it.
 #pragma once
 
-#include "core/data/calibration_priors.h"
+#include "core/data/calibration_setup.h"
 #include "core/initialisation/camera_poses.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/initialise.h"

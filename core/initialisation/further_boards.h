@@ -1,7 +1,6 @@
 // Poses of further boards, and of the cameras that see them.
 #pragma once
 
-#include "core/data/calibration_priors.h"
 #include "core/data/calibration_setup.h"
 #include "core/initialisation/camera_trajectory.h"
 #include "core/initialisation/initialise.h"

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "core/base/progress.h"
-#include "core/data/calibration_priors.h"
+#include "core/data/calibration_setup.h"
 #include "core/data/imu_sample.h"
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"

@@ -6,7 +6,7 @@
 #include "core/initialisation/camera_poses.h"
 #include "core/initialisation/initialisation_options.h"
 
-#include "core/data/calibration_priors.h"
+#include "core/data/calibration_setup.h"
 
 #include <optional>
 #include <vector>

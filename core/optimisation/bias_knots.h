@@ -64,7 +64,7 @@ auto jacobianRows(double** jacobians, int block, Eigen::Index first_row) {
   return Eigen::Map<Eigen::Matrix<double, Rows, Columns, kOrder>>(jacobians[block] + first_row * Columns);
 }
 
-// A quaternion block, so3_manifold.h: the last of the four columns is unused.
+// A quaternion block, calibration_problem.h: the last of the four columns is unused.
 template <int Rows>
 void writeRotationRows(double** jacobians, int block, Eigen::Index first_row,
                        const Eigen::Matrix<double, Rows, 3>& by_delta) {

@@ -3,10 +3,10 @@
 
 #include "core/optimisation/parameter_blocks.h"
 #include "core/optimisation/problem_builder.h"
-#include "core/optimisation/so3_manifold.h"
 #include "core/optimisation/view_circles.h"
 #include "core/optimisation/view_cost.h"
 
+#include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/sphere_manifold.h>
 
@@ -14,6 +14,22 @@
 #include <vector>
 
 namespace evical {
+
+// Quaternion blocks (x y z w, as Eigen stores them) perturbed on the right: R -> R Exp(delta).
+//
+// PlusJacobian is [I; 0]: cost functions write derivatives with respect to delta into the first three of the
+// four columns, and zero into the last. This avoids the chain rule through the quaternion. These blocks'
+// Jacobians can therefore not be compared with derivatives by the quaternion's numbers.
+
+class So3Manifold final : public ceres::Manifold {
+ public:
+  int AmbientSize() const override { return 4; }
+  int TangentSize() const override { return 3; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
+  bool PlusJacobian(const double* x, double* jacobian) const override;
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override;
+  bool MinusJacobian(const double* x, double* jacobian) const override;
+};
 
 class CalibrationProblem {
  public:

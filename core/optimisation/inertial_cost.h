@@ -12,7 +12,7 @@
 // mapping, delay [s]; further IMUs: rotation, lever arm l [m], time offset. Drifting biases add two blocks at
 // the end: the deviation of the bias from its mean at the knots before and after the samples; between
 // them it is linear. Without unit. Mapping: the upper triangle row by row (m00 m01 m02 m11 m12
-// m22). Quaternion blocks as in so3_manifold.h.
+// m22). Quaternion blocks as in calibration_problem.h.
 #pragma once
 
 #include "core/geometry/spline_segment.h"

@@ -2,7 +2,7 @@
 
 #include "core/base/in_parallel.h"
 #include "core/base/time.h"
-#include "core/geometry/pose_times.h"
+#include "core/geometry/camera_motion.h"
 #include "core/optimisation/bias_knots.h"
 #include "core/optimisation/inertial_cost.h"
 #include "core/optimisation/sample_errors.h"

@@ -48,7 +48,7 @@ class PriorCost final : public ceres::CostFunction {
 enum class PriorAxes { Target, Source };
 
 // Zero if a rotation equals its prior: r = Log(R R_prior^-1) / sigma about the target's axes, Log(R_prior^-1
-// R) / sigma about the source's; without unit. Block: quaternion as in so3_manifold.h.
+// R) / sigma about the source's; without unit. Block: quaternion as in calibration_problem.h.
 class RotationPriorCost final : public ceres::SizedCostFunction<3, 4> {
  public:
   RotationPriorCost(const Eigen::Quaterniond& mean, const Eigen::Vector3d& sigma_rad,

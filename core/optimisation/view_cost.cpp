@@ -2,7 +2,6 @@
 
 #include "core/geometry/camera_motion.h"
 #include "core/geometry/circle_conic.h"
-#include "core/geometry/pose_times.h"
 #include "core/geometry/so3.h"
 
 #include <algorithm>
@@ -45,7 +44,7 @@ enum Block : std::size_t {
 };
 constexpr std::array<int, kBlocks> kBlockSizes = {4, 3, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 4, 3, 9};
 
-// Quaternion blocks as in so3_manifold.h.
+// Quaternion blocks as in calibration_problem.h.
 int tangentSize(int block_size) {
   return block_size == 4 ? 3 : block_size;
 }

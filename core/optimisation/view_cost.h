@@ -12,7 +12,7 @@
 // (displacement_field.h). Then each circle's residual is shortened, so that its square is Huber's loss. With
 // free intrinsics, the prediction is that of free_intrinsics.h.
 //
-// Parameter blocks, in this order; quaternions are x y z w, with the tangent space of so3_manifold.h:
+// Parameter blocks, in this order; quaternions are x y z w, with the tangent space of calibration_problem.h:
 //   size  unit  parameter
 //   4     -     rotation control points of the view's segments, one block each
 //   3     m     position control points of the view's segments, one block each
@@ -36,7 +36,7 @@
 // these is negligible.
 //
 // Control points and the camera's pose in the rig move the circles only through the camera's pose at their
-// times. So the derivatives are by that pose at one to three times (core/geometry/pose_times.h), and the
+// times. So the derivatives are by that pose at one to three times (core/geometry/camera_motion.h), and the
 // products of all circles go to the control points at once (docs/maths.md, 9.15). Longer views have
 // derivatives by control points.
 #pragma once

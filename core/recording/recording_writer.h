@@ -79,7 +79,7 @@ std::unique_ptr<RecordingWriter> createRaw(const std::filesystem::path& path,
 std::unique_ptr<RecordingWriter> createDat(const std::filesystem::path& path,
                                            const std::vector<StreamInfo>& streams);
 
-// A writable format; the table is in create_recording.cpp.
+// A writable format; the table is in open_recording.cpp.
 struct RecordingFormat {
   const char* name;         // as users choose it: "bag"
   const char* extension;    // ".bag"; empty: the recording is a folder

@@ -2,7 +2,7 @@
 // logs without a change; --hour: memory and time.
 #include "core/maintenance/stop_calibration.h"
 #include "core/pipeline/maintain/maintain_imus.h"
-#include "core/pipeline/simulate/drive_simulation.h"
+#include "core/pipeline/simulate/simulation.h"
 #include "tests/benchmarks/benchmark_program.h"
 
 #include <fmt/format.h>

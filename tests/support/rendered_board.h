@@ -1,8 +1,8 @@
 // Images of boards with a known truth: every pixel is the mean of the pattern over its area.
 #pragma once
 
-#include "core/frames/found_point.h"
 #include "core/frames/gray_image.h"
+#include "core/frames/plane_map.h"
 #include "core/frames/tag_layout.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"

@@ -1,6 +1,6 @@
 #include "tests/support/simulated_recording.h"
 
-#include "core/base/file_lock.h"
+#include "core/base/file_places.h"
 #include "core/pipeline/simulate/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/support/test_folders.h"

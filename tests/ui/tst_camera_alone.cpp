@@ -16,7 +16,6 @@
 #include "tests/ui/window_fixture.h"
 #include "ui/detection/detection_screen.h"
 #include "ui/detection/timeline.h"
-#include "ui/screens/lens/lens_file.h"
 #include "ui/screens/lens/lens_screen.h"
 #include "ui/screens/recording/aim_chooser.h"
 #include "ui/screens/recording/recording_screen.h"

@@ -193,7 +193,7 @@ class TestDetectionFrames : public QObject {
   }
 
   void analysis_tellsHowTagsDifferFromUsualOnes() {
-    PrintedBoard printed;
+    evical::PrintedBoard printed;
     printed.board.type = BoardType::AprilGrid;
     printed.board.rows = printed.board.cols = 4;
     printed.board.spacing_m = 0.1;

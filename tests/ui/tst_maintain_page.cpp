@@ -1,5 +1,5 @@
 // Story of a user without access to a board: logs of the IMUs are compared with the old result.
-#include "core/pipeline/simulate/drive_simulation.h"
+#include "core/pipeline/simulate/simulation.h"
 #include "core/report/assessment_report.h"
 #include "core/synthetic/drive_scenario.h"
 #include "tests/support/test_folders.h"

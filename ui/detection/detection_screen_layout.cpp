@@ -6,7 +6,7 @@
 #include "ui/detection/window_list.h"
 #include "ui/detection/window_panel.h"
 #include "ui/forms/number_field.h"
-#include "ui/theme/steady_label.h"
+#include "ui/theme/plain_labels.h"
 #include "ui/theme/theme.h"
 
 #include <QCheckBox>

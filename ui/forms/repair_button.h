@@ -3,7 +3,7 @@
 // again.
 #pragma once
 
-#include "core/base/repair.h"
+#include "core/base/error.h"
 
 #include <QPushButton>
 

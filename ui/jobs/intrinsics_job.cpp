@@ -61,9 +61,10 @@ DetectionResult inSession(const Session& session, std::size_t camera, const Dete
 
 FoundLens find(const Session& session, std::size_t camera, const RunContext& context) {
   const auto run = std::make_shared<IntrinsicsRun>(calibrateIntrinsics(session, camera, context));
-  for (const RecordingFault& fault : run->pass.faults) context.progress.log(LogLevel::Warning, fault.text);
+  for (const RecordingFault& fault : run->detections.faults)
+    context.progress.log(LogLevel::Warning, fault.text);
   const auto seen = std::make_shared<CalibrationRun>();
-  seen->pass = inSession(session, camera, run->pass);
+  seen->detections = inSession(session, camera, run->detections);
   return {run, seen};
 }
 

@@ -5,7 +5,6 @@
 
 #include "core/base/error.h"
 #include "core/base/progress.h"
-#include "core/base/repair.h"
 
 #include <QObject>
 #include <QString>

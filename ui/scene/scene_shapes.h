@@ -2,9 +2,8 @@
 // Shapes of a calibration scene as coloured lines and polygons. For sources that draw with VTK.
 #pragma once
 
-#include "core/geometry/board.h"
-#include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/rigid_transform.h"
+#include "ui/scene/camera_shape.h"
+#include "ui/scene/placed_board.h"
 
 #include <vtkCellArray.h>
 #include <vtkNew.h>
@@ -16,35 +15,6 @@
 #include <array>
 #include <optional>
 #include <span>
-
-// A board with its pose.
-
-namespace evical::ui {
-
-struct PlacedBoard {
-  Board board;
-  RigidTransform world_from_board = {};
-};
-
-}  // namespace evical::ui
-
-// Field of view of a camera as a pyramid.
-
-namespace evical::ui {
-
-// Corners of the image in the camera frame at z = 1, in order around it.
-struct CameraShape {
-  std::array<Eigen::Vector3d, 4> corners;
-  double vertical_view_rad = 0.0;
-};
-
-// Point of a pixel's ray at z = 1; for wide-angle lenses clipped to what can be drawn.
-Eigen::Vector3d rayAtUnitDepth(const CameraIntrinsics& camera, const Eigen::Vector2d& pixel);
-
-// Without intrinsics: a typical camera.
-CameraShape cameraShape(const std::optional<CameraIntrinsics>& intrinsics);
-
-}  // namespace evical::ui
 
 class vtkPolyData;
 

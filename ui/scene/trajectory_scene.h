@@ -5,7 +5,7 @@
 #include "core/data/board_observations.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "ui/scene/scene_shapes.h"
+#include "ui/scene/placed_board.h"
 #include "ui/scene/trajectory_track.h"
 
 #include <QColor>

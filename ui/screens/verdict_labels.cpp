@@ -2,6 +2,7 @@
 #include "ui/screens/verdict_labels.h"
 
 #include "ui/forms/form_words.h"
+#include "ui/theme/theme.h"
 
 #include <QObject>
 #include <QRegularExpression>
@@ -121,6 +122,22 @@ QString stillMissing(const RecordingAssessment& assessment) {
     if (!missing.isEmpty()) break;
   }
   return missing.isEmpty() ? QString() : QObject::tr("Still missing: %1").arg(missing.join(' '));
+}
+
+}  // namespace evical::ui
+
+namespace evical::ui {
+
+QIcon verdictIcon(CalibrationStatus status) {
+  switch (status) {
+    case CalibrationStatus::Ok:
+      return icon("done", theme().good);
+    case CalibrationStatus::Doubtful:
+      return icon("warning", theme().warning);
+    case CalibrationStatus::Failed:
+      break;
+  }
+  return icon("error", theme().bad);
 }
 
 }  // namespace evical::ui

@@ -2,8 +2,10 @@
 // Texts of the card that assesses a recording.
 #pragma once
 
+#include "core/data/calibration_status.h"
 #include "core/pipeline/rig/recording_assessment.h"
 
+#include <QIcon>
 #include <QString>
 
 #include <vector>
@@ -22,5 +24,13 @@ QString summaryOf(const RecordingAssessment& assessment);
 // For the existing part of a recording that is still being written.
 QString summaryWhileWritten(const RecordingAssessment& assessment);
 QString stillMissing(const RecordingAssessment& assessment);  // empty: nothing
+
+}  // namespace evical::ui
+
+// Icon of a verdict, distinct by colour and by shape.
+
+namespace evical::ui {
+
+QIcon verdictIcon(CalibrationStatus status);
 
 }  // namespace evical::ui

@@ -3,6 +3,8 @@
 // markup as rich text, and open the files that it names.
 #pragma once
 
+#include <QLabel>
+
 class QApplication;
 class QWidget;
 
@@ -14,5 +16,21 @@ void showTextAsPlain(QApplication& application);
 
 // The tool tip of this widget is rich text of our own, with names escaped.
 void useRichToolTip(QWidget& widget);
+
+}  // namespace evical::ui
+
+// Labels whose text changes many times a second.
+
+namespace evical::ui {
+
+// Fixes the size to that of the longest text: a label that changes its size triggers a layout of its
+// surroundings.
+inline void keepSize(QLabel& label, const QString& longest) {
+  const QString text = label.text();
+  label.setText(longest);
+  label.ensurePolished();
+  label.setFixedSize(label.sizeHint());
+  label.setText(text);
+}
 
 }  // namespace evical::ui

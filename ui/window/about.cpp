@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/about.h"
 
-#include "ui/window/reading_dialog.h"
+#include "ui/window/user_guide.h"
 
 #include <QDialog>
 #include <QFile>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/window/job_status.h"
 
-#include "ui/theme/steady_label.h"
+#include "ui/theme/plain_labels.h"
 
 #include <QHBoxLayout>
 #include <QLabel>

@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/pipeline/lens/intrinsics_files.h"
-#include "ui/screens/lens/lens_file.h"
+#include "ui/screens/lens/lens_screen.h"
 
 #include <QDir>
 #include <QFileDialog>

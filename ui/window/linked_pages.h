@@ -4,6 +4,10 @@
 
 #include "ui/window/pages.h"
 
+#include "ui/document/calibration_aim.h"
+
+#include <QStackedWidget>
+
 namespace evical::ui {
 
 struct Pages;
@@ -24,5 +28,24 @@ namespace evical::ui {
 struct Workbench;
 
 void wireFollowing(const Pages& pages, Workbench& workbench);
+
+}  // namespace evical::ui
+
+// Wraps a page that is for rigs only; while a camera alone is calibrated, shows a note instead.
+
+namespace evical::ui {
+
+class RigPage : public QStackedWidget {
+  Q_OBJECT
+
+ public:
+  // `what`: content of the page with its verb, as in "Trajectories belong".
+  RigPage(QWidget* page, const QString& what, QWidget* parent);
+
+  void setAim(CalibrationAim aim);
+
+ signals:
+  void rigRequested();
+};
 
 }  // namespace evical::ui

@@ -24,7 +24,6 @@
 #include "ui/window/print_board.h"
 #include "ui/window/recent_files.h"
 #include "ui/window/recording_check.h"
-#include "ui/window/rig_page.h"
 #include "ui/window/session_files.h"
 #include "ui/window/workbench.h"
 

@@ -2,7 +2,7 @@
 #include "ui/window/side_bar.h"
 
 #include "core/report/result_yaml.h"
-#include "ui/screens/verdict_icon.h"
+#include "ui/screens/verdict_labels.h"
 #include "ui/theme/theme.h"
 
 #include <QEvent>

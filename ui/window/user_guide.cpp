@@ -2,10 +2,10 @@
 #include "ui/window/user_guide.h"
 
 #include "ui/screens/recording/motion_picture.h"
-#include "ui/window/reading_dialog.h"
 
 #include <QAbstractTextDocumentLayout>
 #include <QDialog>
+#include <QDialogButtonBox>
 #include <QDir>
 #include <QFile>
 #include <QImage>
@@ -13,6 +13,7 @@
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPixmap>
+#include <QPushButton>
 #include <QRegularExpression>
 #include <QScrollBar>
 #include <QShortcut>
@@ -245,6 +246,34 @@ void addGuidePictures(QTextDocument& document, int width_px, double pixel_ratio)
   for (const QString& name : guidePictures()) add(name, fileOf(name, width_px, pixel_ratio));
   for (const ShownMotion& motion : shownMotions())
     add(kMotion + motion.name, drawingOf(motion, width_px, pixel_ratio));
+}
+
+}  // namespace evical::ui
+
+namespace evical::ui {
+
+QDialog* makeReadingDialog(QWidget* window, const QString& name, const QString& title) {
+  auto* const dialog = new QDialog(window);
+  dialog->setObjectName(name);
+  dialog->setWindowTitle(title);
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  new QVBoxLayout(dialog);
+  return dialog;
+}
+
+void addCloseButton(QDialog* dialog) {
+  auto* const buttons = new QDialogButtonBox(QDialogButtonBox::Close, dialog);
+  QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::close);
+  buttons->button(QDialogButtonBox::Close)->setAutoDefault(false);  // Return belongs to the fields
+  dialog->layout()->addWidget(buttons);
+}
+
+bool raiseOpened(QWidget* window, const QString& name) {
+  auto* const dialog = window->findChild<QDialog*>(name);
+  if (dialog == nullptr) return false;
+  dialog->raise();
+  dialog->activateWindow();
+  return true;
 }
 
 }  // namespace evical::ui

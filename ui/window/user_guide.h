@@ -26,3 +26,22 @@ void addGuidePictures(QTextDocument& document, int width_px, double pixel_ratio)
 QStringList guidePictures();  // names of the embedded pictures
 
 }  // namespace evical::ui
+
+// Dialog for reading, not modal, so that it never blocks a running job.
+
+class QDialog;
+class QString;
+class QWidget;
+
+namespace evical::ui {
+
+// Creates a dialog of this name with an empty column; deleted when closed.
+QDialog* makeReadingDialog(QWidget* window, const QString& name, const QString& title);
+
+// Call after everything else has been added: the button goes to the bottom.
+void addCloseButton(QDialog* dialog);
+
+// If the dialog is already open, raises it and returns true.
+bool raiseOpened(QWidget* window, const QString& name);
+
+}  // namespace evical::ui

@@ -2,7 +2,7 @@
 // by its two tilts.
 #pragma once
 
-#include "core/geometry/gravity_tilts.h"
+#include "core/geometry/so3.h"
 #include "core/optimisation/parameter_blocks.h"
 
 #include <Eigen/Core>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/child_process.h"
-#include "core/base/file_lock.h"
+#include "core/base/file_places.h"
 #include "core/pipeline/batch/batch_jobs.h"
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "core/pipeline/compare/repeated_estimates.h"
 
 #include "core/data/pixel_delay.h"
-#include "core/geometry/gravity_tilts.h"
+#include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/calibration_options.h"

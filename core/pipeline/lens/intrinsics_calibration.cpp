@@ -1,16 +1,20 @@
 #include "core/pipeline/lens/intrinsics_calibration.h"
 
+#include "core/pipeline/lens/intrinsics_bootstrap.h"
+
 #include "core/base/error.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
+#include "core/data/quantity.h"
 #include "core/frontend/detection_options.h"
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/estimate_intrinsics.h"
+#include "core/intrinsics/intrinsics_checks.h"
 #include "core/intrinsics/intrinsics_options.h"
+#include "core/intrinsics/intrinsics_uncertainty.h"
 #include "core/pipeline/detection/board_size_check.h"
 #include "core/pipeline/detection/camera_views.h"
 #include "core/pipeline/detection/session_recording.h"
-#include "core/pipeline/lens/intrinsics_bootstrap.h"
 
 #include <fmt/format.h>
 
@@ -164,6 +168,21 @@ IntrinsicsRun calibrateIntrinsics(const Session& session, std::size_t camera, co
   checkBoardSize(run.detections.cameras.front(), alone.board, alone.options.front_end->extent);
   run.result.elapsed_s = stopwatch.elapsed_s();
   return run;
+}
+
+IntrinsicsResult jointIntrinsics(const IntrinsicsResult& first, std::size_t camera,
+                                 const CameraIntrinsics& solved, const UncertaintyReport& report,
+                                 const IntrinsicsOptions& options) {
+  const Eigen::MatrixXd covariance = intrinsicsCovariance(report, camera);
+  if (covariance.size() == 0) return first;
+  IntrinsicsResult joint = first;
+  joint.intrinsics = solved;
+  joint.covariance.setZero();
+  joint.covariance.topLeftCorner(covariance.rows(), covariance.cols()) = covariance;
+  setSigmas(joint.intrinsics, joint.covariance, joint.image);
+  constexpr bool kConverged = true;  // otherwise the whole calibration is doubtful already
+  judge(kConverged, options, joint);
+  return joint;
 }
 
 }  // namespace evical

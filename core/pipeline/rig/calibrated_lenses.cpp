@@ -6,7 +6,7 @@
 #include "core/intrinsics/intrinsics_options.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/optimisation_options.h"
-#include "core/pipeline/lens/joint_intrinsics.h"
+#include "core/pipeline/lens/intrinsics_calibration.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 // free at a time. The group that explains most of the misfit is reported with its estimate.
 #pragma once
 
+#include "core/base/error.h"
 #include "core/base/progress.h"
-#include "core/base/repair.h"
 #include "core/data/calibration_result.h"
 #include "core/data/calibration_setup.h"
 #include "core/optimisation/batch_optimiser.h"

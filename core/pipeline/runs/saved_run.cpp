@@ -1,10 +1,11 @@
 #include "core/pipeline/runs/saved_run.h"
 
+#include "core/pipeline/runs/result_files.h"
+#include "core/pipeline/runs/run_data.h"
+
 #include "core/base/file_places.h"
 #include "core/base/yaml_node.h"
 #include "core/pipeline/detection/detections_check.h"
-#include "core/pipeline/runs/result_files.h"
-#include "core/pipeline/runs/run_data.h"
 #include "core/pipeline/session/given_points.h"
 #include "core/pipeline/session/session_keys.h"
 #include "core/report/detections_csv.h"
@@ -394,6 +395,29 @@ void removeOldRuns(std::vector<RunSummary> runs, std::size_t most, std::uintmax_
     std::filesystem::remove_all(runs[k].folder, ignored);
     bytes -= sizes[k];
   }
+}
+
+namespace {
+
+std::optional<QualityWarning> causeToTell(const CalibrationOutcome& outcome, bool folder_was_there) {
+  if (outcome.error && outcome.error->kind() == ErrorKind::CalibrationFailed)
+    return QualityWarning{outcome.error->what(), outcome.error->repair(), "failure"};
+  if (outcome.status == RunStatus::Cancelled && folder_was_there)
+    return QualityWarning{"cancelled", {}, "cancelled"};
+  return std::nullopt;
+}
+
+}  // namespace
+
+void writeUnfinishedRun(const std::filesystem::path& folder, bool folder_was_there, const Session& session,
+                        const CalibrationOutcome& outcome, const std::string& version,
+                        const std::string& log) {
+  const std::optional<QualityWarning> cause = causeToTell(outcome, folder_was_there);
+  std::error_code ignored;
+  if (!cause || !std::filesystem::is_directory(folder, ignored)) return;
+  // A failed run keeps an earlier result of the same folder: that is still valid for its recording.
+  if (std::filesystem::exists(folder / "trajectory.csv", ignored)) return;
+  writeFailure(folder, session, *cause, version, log, outcome.detections);
 }
 
 }  // namespace evical

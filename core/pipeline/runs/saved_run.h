@@ -103,4 +103,12 @@ std::vector<std::string> differingFrom(const RunSummary& before, const RunSummar
 // removed last, the newest is kept.
 void removeOldRuns(std::vector<RunSummary> runs, std::size_t most, std::uintmax_t max_bytes);
 
+// Files of a run without a result: the reason, if this does not overwrite an earlier result.
+
+// `folder_was_there`: before this run. A failed run writes the reason. A cancelled run removes a folder that
+// it has created; a run with bad input writes nothing.
+void writeUnfinishedRun(const std::filesystem::path& folder, bool folder_was_there, const Session& session,
+                        const CalibrationOutcome& outcome, const std::string& version,
+                        const std::string& log);
+
 }  // namespace evical

@@ -4,6 +4,8 @@
 
 #include "core/base/progress.h"
 #include "core/data/event.h"
+#include "core/report/result_yaml.h"
+#include "core/synthetic/drive_scenario.h"
 #include "core/synthetic/scenario.h"
 
 #include <cstddef>
@@ -31,5 +33,15 @@ SimulationSummary simulate(const Scenario& scenario, const std::filesystem::path
 void simulateCameras(const Scenario& scenario,
                      const std::function<void(std::size_t camera, EventSpan events)>& sink,
                      const RunContext& context);
+
+// Simulates a scenario with IMUs only as a log in a folder: recording.bag (or another format), truth.yaml,
+// the IMUs' calibration before any change (calibration/result.yaml), and trajectory.csv if requested.
+
+// Creates the folder if necessary; truth.yaml is written last. `session` of the summary is the old result.
+SimulationSummary simulateDrive(const DriveScenario& scenario, const std::filesystem::path& folder,
+                                const RunContext& context, const std::string& format_name = {});
+
+// Calibration of the IMUs before all steps, with typical sigmas.
+NamedResult calibrationBefore(const DriveScenario& scenario);
 
 }  // namespace evical

@@ -5,13 +5,16 @@
 //   numbers.
 #pragma once
 
-#include "core/geometry/resolution.h"
 #include "core/recording/numpy/numpy_columns.h"
 
+#include "core/geometry/resolution.h"
+
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evical::numpy {
@@ -40,5 +43,22 @@ FoundArrays findEvents(const std::vector<Array>& arrays);
 
 // True if arrays of these names are a stream of events: x, y, t, p in any of the spellings.
 bool nameEvents(const std::vector<std::string>& arrays);
+
+}  // namespace evical::numpy
+
+// Part of events in an array or field, determined by its name.
+
+namespace evical::numpy {
+
+enum class Part { None, X, Y, Time, Polarity, Xy, Xyp, TimeOffset, Width, Height };
+
+struct NamedPart {
+  Part part = Part::None;
+  std::size_t rank = 0;                 // the usual spelling of a part first
+  std::string group;                    // the part before: "left" of "left_x", "events" of "events/x"
+  std::optional<std::int64_t> unit_ns;  // of a time: "t_us"
+};
+
+NamedPart partNamed(std::string_view name);
 
 }  // namespace evical::numpy

@@ -2,7 +2,7 @@
 // truth.
 #include "core/base/error.h"
 #include "core/frames/blink_tracker.h"
-#include "core/frames/saddle_measurement.h"
+#include "core/frames/corner_measurement.h"
 #include "core/frames/views_from_frames.h"
 #include "core/geometry/camera_model.h"
 #include "tests/support/rendered_board.h"

@@ -1,7 +1,7 @@
 // A cost function's Jacobians against central differences, quaternion blocks perturbed on the right.
 #pragma once
 
-#include "core/optimisation/so3_manifold.h"
+#include "core/optimisation/calibration_problem.h"
 #include "tests/support/numeric_jacobian.h"
 
 #include <ceres/cost_function.h>

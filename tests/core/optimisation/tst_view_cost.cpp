@@ -1,6 +1,6 @@
 // Derivatives of the circles' cost against numeric differences, and its residuals for known rigs.
+#include "core/geometry/camera_motion.h"
 #include "core/geometry/circle_conic.h"
-#include "core/geometry/pose_times.h"
 #include "core/geometry/trajectory.h"
 #include "tests/core/optimisation/residual_states.h"
 #include "tests/support/test_program.h"

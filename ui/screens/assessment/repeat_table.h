@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/report/repeat_comparison.h"
-#include "ui/screens/assessment/copy_table.h"
+#include "ui/screens/assessment/finding_table.h"
 
 #include <cstddef>
 #include <optional>

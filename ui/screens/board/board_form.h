@@ -3,7 +3,6 @@
 #pragma once
 
 #include "core/geometry/board.h"
-#include "core/geometry/measured_length.h"
 
 #include <QWidget>
 

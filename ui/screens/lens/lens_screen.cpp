@@ -3,10 +3,8 @@
 
 #include "core/base/error.h"
 #include "ui/screens/lens/image_map_view.h"
-#include "ui/screens/lens/lens_file.h"
 #include "ui/screens/lens/lens_parameters.h"
 #include "ui/screens/lens/views_chart.h"
-#include "ui/screens/verdict_icon.h"
 #include "ui/screens/verdict_labels.h"
 #include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"

@@ -8,7 +8,9 @@
 #include "core/report/intrinsics_report.h"
 
 #include <QWidget>
+#include <QtGlobal>
 
+#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -85,5 +87,24 @@ class LensScreen : public QWidget {
   QListWidget* notes_;
   QMenu* programs_;
 };
+
+}  // namespace evical::ui
+
+// File formats in which a lens can be saved.
+
+namespace evical::ui {
+
+struct LensFile {
+  const char* title;  // shown
+  const char* name;   // in core (pipeline/intrinsics_files.h)
+};
+
+inline constexpr std::array kLensFiles = {
+    LensFile{QT_TRANSLATE_NOOP("LensFile", "Evical: lens with sigmas and correlations"), "intrinsics.yaml"},
+    LensFile{QT_TRANSLATE_NOOP("LensFile", "ROS camera_info"), "camera_info.yaml"},
+    LensFile{QT_TRANSLATE_NOOP("LensFile", "Kalibr camchain"), "camchain.yaml"},
+    LensFile{QT_TRANSLATE_NOOP("LensFile", "Projection uncertainty over the image, table"),
+             "projection_std.csv"},
+    LensFile{QT_TRANSLATE_NOOP("LensFile", "Detections of the board, table"), "detections.csv"}};
 
 }  // namespace evical::ui

@@ -4,7 +4,7 @@
 #include "core/geometry/board.h"
 #include "core/report/result_yaml.h"
 #include "ui/screens/recording/motion_picture.h"
-#include "ui/screens/verdict_icon.h"
+#include "ui/screens/verdict_labels.h"
 #include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"
 

@@ -8,7 +8,6 @@
 #include "ui/screens/result/pose_panel.h"
 #include "ui/screens/result/quantity_table.h"
 #include "ui/screens/result/result_parameters.h"
-#include "ui/screens/verdict_icon.h"
 #include "ui/screens/verdict_labels.h"
 #include "ui/screens/wrapped_label.h"
 #include "ui/theme/theme.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/screens/result/runs_panel.h"
 
-#include "ui/screens/verdict_icon.h"
+#include "ui/screens/verdict_labels.h"
 #include "ui/theme/theme.h"
 
 #include <QDateTime>

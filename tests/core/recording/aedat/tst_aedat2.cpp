@@ -180,7 +180,7 @@ int brightnessAt(int x_px, int y_px) {
   return 3 * x_px + y_px;  // 812 at most
 }
 
-std::string column(int x_px, bool after_exposure, std::int32_t time_us) {
+std::string apsColumn(int x_px, bool after_exposure, std::int32_t time_us) {
   std::string bytes;
   for (int y = 0; y < kHeight; ++y) {
     const int value = 900 - (after_exposure ? brightnessAt(x_px, y) : 0);
@@ -192,7 +192,7 @@ std::string column(int x_px, bool after_exposure, std::int32_t time_us) {
 std::string readOut(bool after_exposure, std::int32_t begin_us) {
   std::string bytes;
   for (int x = kWidth - 1, k = 0; x >= 0; --x, ++k)
-    bytes += column(x, after_exposure, begin_us + kReadOut_us * k / (kWidth - 1));
+    bytes += apsColumn(x, after_exposure, begin_us + kReadOut_us * k / (kWidth - 1));
   return bytes;
 }
 
@@ -238,8 +238,8 @@ void TestAedat2::rollingShutter_isToldOf() {
   constexpr int kBehind = 100;
   constexpr std::int32_t kColumn_us = 10;
   for (int k = 0; k < kWidth + kBehind; ++k) {
-    if (k < kWidth) bytes += column(kWidth - 1 - k, false, kColumn_us * k);
-    if (k >= kBehind) bytes += column(kWidth - 1 - (k - kBehind), true, kColumn_us * k);
+    if (k < kWidth) bytes += apsColumn(kWidth - 1 - k, false, kColumn_us * k);
+    if (k >= kBehind) bytes += apsColumn(kWidth - 1 - (k - kBehind), true, kColumn_us * k);
   }
   const auto reader = openRecording(scratch_.write("rolling.aedat", bytes));
   const std::vector<Frame> frames = framesOf(*reader);

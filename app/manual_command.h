@@ -1,8 +1,20 @@
-// Value of a command line option in readable form.
+// Bash completion of commands, options and choices, generated from the command definitions.
 #pragma once
 
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace evical {
+
+std::string bashCompletion(const CLI::App& program, const std::vector<const CLI::App*>& commands);
+
+}  // namespace evical
+
+// Value of a command line option in readable form.
 
 namespace CLI {
 class Option;

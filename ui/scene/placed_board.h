@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A board with its pose.
+#pragma once
+
+#include "core/geometry/board.h"
+#include "core/geometry/rigid_transform.h"
+
+namespace evical::ui {
+
+struct PlacedBoard {
+  Board board;
+  RigidTransform world_from_board = {};
+};
+
+}  // namespace evical::ui
