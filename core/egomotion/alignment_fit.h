@@ -10,6 +10,7 @@
 #include <vector>
 
 namespace evical {
+
 // Rotation about the IMU's axes, time offset, bias, scale.
 inline constexpr int kAlignmentNumbers = 8;
 using AlignmentVector = Eigen::Matrix<double, kAlignmentNumbers, 1>;

@@ -66,11 +66,4 @@ class IntrinsicsBlock {
   std::unique_ptr<ceres::Manifold> manifold_;  // null if all nine are used
 };
 
-// Prior on a free lens.
-
-struct OptimisationOptions;
-
-// All nine intrinsics around the detection intrinsics, with the sigmas given for the lens, otherwise weak.
-IntrinsicsMatrix lensPriorCovariance(const CameraLens& lens, const OptimisationOptions& options);
-
 }  // namespace evical

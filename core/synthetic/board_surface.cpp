@@ -3,6 +3,7 @@
 #include "core/data/board_bow.h"
 
 namespace evical {
+
 BoardSurface::BoardSurface(const Scenario& scenario) {
   const SimulatedBow& bow = scenario.board_bow;
   bent_ = bow != SimulatedBow{};

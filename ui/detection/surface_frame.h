@@ -18,6 +18,7 @@
 #include <vector>
 
 namespace evical {
+
 struct NormalFlow;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 namespace evical {
+
 struct Session;
 }
 

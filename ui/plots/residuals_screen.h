@@ -20,6 +20,7 @@ class QTimer;
 class QToolButton;
 
 namespace evical {
+
 struct ResidualStatistics;
 struct WindowResidual;
 }  // namespace evical

@@ -19,6 +19,7 @@ class QTreeWidget;
 class QTreeWidgetItem;
 
 namespace evical {
+
 struct ExportTarget;
 }
 

@@ -20,6 +20,7 @@
 class QWidget;
 
 namespace evical {
+
 struct SavedRun;
 }
 

@@ -4,9 +4,8 @@
 #include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"
-#include "core/optimisation/free_intrinsics.h"
 #include "core/optimisation/optimisation_options.h"
-#include "core/optimisation/prior_residuals.h"
+#include "core/optimisation/weak_priors.h"
 #include "core/pipeline/compare/compared_quantities.h"
 
 #include <utility>
