@@ -45,7 +45,6 @@ std::stop_token stopOnSignals();
 
 // Progress of a batch: one line per running job, rewritten on a terminal; otherwise a line at the start and
 // the end of each job.
-
 class BatchLines final : public BatchWatcher {
  public:
   BatchLines(std::size_t jobs, bool quiet);

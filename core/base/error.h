@@ -8,7 +8,6 @@
 namespace evical {
 
 // The setting that fixes a problem, as data: a command line can print it and a window offer it.
-
 struct Repair {
   // An option, "optimisation.model.gyroscope_rotation", a key of a session's IMU,
   // "imus.left_imu.acceleration_unit", or "time_range_s": accepted by setInSession

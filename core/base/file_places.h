@@ -30,7 +30,6 @@ std::string contentOfFile(const std::filesystem::path& file,
                           std::uintmax_t max_bytes = std::numeric_limits<std::uintmax_t>::max());
 
 // A folder that is created for results, and removed if it stays empty.
-
 class NewFolder {
  public:
   // Throws CalibrationError (BadInput) if it cannot be created or written to.
@@ -54,7 +53,6 @@ class NewFolder {
 // Lock file for one process at a time: on one machine, or on several if the file system supports locks (NFS
 // from version 4, Lustre with flock). The lock is released when that process and those that inherited it have
 // ended, in any way.
-
 class FileLock {
  public:
   // Acquires the lock if it is free. Throws CalibrationError (CalibrationFailed) if the file cannot be

@@ -35,7 +35,6 @@ namespace evical {
 //     static const OptionTable<NormalFlowOptions> table(kFields);
 //     return table;
 //   }
-
 template <class Value>
 struct Range {
   Value least, most;  // inclusive
@@ -330,7 +329,6 @@ void OptionTable<Options>::checkOrder(const Options& options, const std::string&
 
 // Shared, immutable options for code that only copies them. They are kept by pointer, so that a file that
 // copies them does not need their definition and is not rebuilt when they change.
-
 template <class Options>
 class SharedOptions {
  public:

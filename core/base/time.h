@@ -33,7 +33,6 @@ constexpr std::int64_t nearestMicrosecond(std::int64_t time_ns) {
 }
 
 // Elapsed time by a monotonic clock.
-
 class Stopwatch {
  public:
   // Since construction or the last restart.

@@ -43,7 +43,6 @@ class CalibrationObserver {
 
 // The stages of a calibration, one row each: their names in progress, logs and result.yaml, and their share
 // of a run's time. They are implemented in core/pipeline/rig/calibration_pipeline.cpp.
-
 enum class CalibrationStage { FirstLook, Intrinsics, Detect, Initialise, Optimise, CompareHalves };
 
 // Starting point of a run: determines its stages.

@@ -22,7 +22,6 @@ namespace evical {
 // Prior knowledge of a rig, sensor by sensor. A value with standard deviations is a prior that is combined
 // with the recording's information; one without them is given: fixed, not estimated. Keys, units and frames
 // as in a result: rotations and translations to the reference, sigmas of rotations about its axes.
-
 template <class Value, class Sigma = Value>
 struct KnownValue {
   Value value;

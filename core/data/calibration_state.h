@@ -19,7 +19,6 @@ namespace evical {
 
 // Drift of an IMU's biases about their means: straight lines between equidistant knots, on the IMU's own
 // clock (seconds since the recording's start). Constant before the first and after the last knot.
-
 struct BiasDrift {
   double start_s = 0.0, knot_spacing_s = 0.0;
   std::vector<Eigen::Vector3d> gyroscope_rad_s, accelerometer_m_s2;  // at the knots, minus the means

@@ -12,7 +12,6 @@
 namespace evical {
 
 // Uncertainty of a given lens, from its file. Numbers in the order of intrinsics_result.h.
-
 struct LensUncertainty {
   IntrinsicsVector std = IntrinsicsVector::Zero();  // 0: not specified; the default applies
   std::optional<IntrinsicsMatrix> correlation = {};

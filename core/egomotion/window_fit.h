@@ -56,7 +56,6 @@ EdgeResidual edgeResidual(const EdgeRow& row, const Eigen::Vector3d& rate_rad_s,
 
 // Normal equations of N numbers and of one depth per patch of the image; no equation contains two depths, so
 // each depth is eliminated separately. Internal to this folder.
-
 template <int N>
 class PatchedNormal {
  public:

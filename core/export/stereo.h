@@ -38,7 +38,6 @@ Rectification rectify(const CameraIntrinsics& left, const CameraIntrinsics& righ
                       const RigidTransform& right_from_left);
 
 // Cameras by their names in data sets of stereo event and frame cameras.
-
 struct DataSetCameras {
   std::optional<RigCamera> left_event, right_event;  // left_event always exists
   std::optional<RigCamera> left_frame, right_frame;

@@ -68,7 +68,6 @@ class OpencvFile {
 };
 
 // Files of a stereo pair that name left and right, but not the cameras of the rig.
-
 struct PairAsRead {
   CameraIntrinsics left, right;  // resolutions are not compared
   RigidTransform right_from_left;

@@ -55,7 +55,6 @@ class BoardFinder {
 };
 
 // Common interface of the finders of different boards.
-
 class PatternFinder {
  public:
   PatternFinder() = default;

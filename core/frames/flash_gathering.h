@@ -47,7 +47,6 @@ GrayImage enlarged(const GrayImage& image, int times);
 
 // Detection of a blinking light's half periods: they begin when ON events start to outweigh OFF events, or
 // the other way round.
-
 class HalfPeriods {
  public:
   static constexpr int kBinsPerPeriod = 16;

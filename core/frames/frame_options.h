@@ -33,7 +33,6 @@ struct FrameOptions {
 };
 
 // Options of the detection of blinking boards.
-
 struct BlinkOptions {
   double min_hz, max_hz;
   double min_peak, min_share;

@@ -32,7 +32,6 @@ class PlaneMap {
 };
 
 // Outlier rejection for points that a decoder read from a picture.
-
 struct ReadPoint {
   Eigen::Vector2d on_board_m = Eigen::Vector2d::Zero(), at_px = Eigen::Vector2d::Zero();
 };
@@ -46,7 +45,6 @@ std::optional<PlaneMap> mapOf(const std::vector<ReadPoint>& points, double step_
 
 // A detected point of the board (Board::point_m) in one frame. Pixels: the centre of the top-left pixel is
 // (0, 0).
-
 struct FoundPoint {
   int point = 0;
   Eigen::Vector2d at_px = Eigen::Vector2d::Zero();

@@ -142,7 +142,6 @@ struct ExtentOptions {
 };
 
 // Thresholds of the published candidate source (docs/maths.md, 5.2). Lengths are the sensor's own pixels.
-
 struct NormalFlowOptions {
   int plane_radius_px;
   double max_plane_error_px;
@@ -160,7 +159,6 @@ struct NormalFlowOptions {
 };
 
 // All options of the front end, one struct per stage.
-
 struct FrontEndOptions {
   DetectionOptions detection;
   BurstOptions bursts;

@@ -142,7 +142,6 @@ class BurstExtractor {
 //   radius offset = r0 + s (d_brightening - d_darkening) / 2 * speed,  s = 1 for dark circles, -1 for bright
 //   ones.
 // docs/maths.md, 10.1.
-
 class PolarityDelayFit {
  public:
   // Adds one window: the speed of the board's image, and the distance of bursts outside the circles' edges,

@@ -17,7 +17,6 @@ namespace evical {
 
 // Surface of active events (docs/maths.md, 5.2): for each pixel and polarity, the time at which the last edge
 // of a window passed.
-
 struct ActivePixel {
   std::uint16_t x_px, y_px;
   bool leading;  // passed by a circle's leading edge, according to the polarity
@@ -61,7 +60,6 @@ NormalFlowField estimateNormalFlow(const ActiveEventSurface& surface, const Norm
 
 // Connected regions of normal flow, classified as parts of a moving circle (docs/maths.md, 5.2; S.
 // Chen et al., "eKalibr", 2501.05688).
-
 enum class ClusterKind {
   Run,    // flows diverge: leading arc
   Chase,  // flows converge: trailing arc

@@ -88,7 +88,6 @@ std::vector<Eigen::Vector2d> boardPoints_m(const Board& board);
 void validate(const Board& board);
 
 // A length measured on the board with a ruler, from one circle's centre to another in the same line.
-
 struct MeasuredLength {
   int spacings = 10;  // between the circles: 10 from the first of 11 rows to the last
   double length_m = 0.5;

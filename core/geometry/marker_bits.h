@@ -20,7 +20,6 @@ const std::vector<std::string>& markerNames();  // of dictionaries
 std::vector<PatternBits> firstMarkers(const std::string& dictionary, int count);
 
 // Places of a ChArUco board's markers: in its bright squares, numbered row by row from the top left.
-
 struct BoardSquare {
   int row = 0, col = 0;
 };

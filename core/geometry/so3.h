@@ -1,6 +1,6 @@
-// Rotations: exponential, logarithm and their Jacobians. Right-hand perturbations throughout: R
-// -> R Exp(delta). Formulas: Sola, Deray, Atchuthan, "A micro Lie theory for state estimation // style: lie
-// in robotics" (2018), section IV.
+// Rotations: exponential, logarithm and their Jacobians. Right-hand perturbations throughout:
+// R -> R Exp(delta). Formulas: Sola, Deray, Atchuthan,
+// "A micro Lie theory for state estimation in robotics" (2018), section IV.  // style: lie
 #pragma once
 
 #include <Eigen/Core>
@@ -32,7 +32,6 @@ Eigen::Vector3d quaternionLog(const Eigen::Quaterniond& rotation);
 
 // Rotation that best maps source directions to target directions: W. Kabsch, "A solution for the best
 // rotation to relate two sets of vectors", 1976.
-
 struct BestRotation {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();  // target_from_source
   Eigen::Vector3d strengths;                             // singular values, the largest first

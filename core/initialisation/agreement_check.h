@@ -37,7 +37,6 @@ void checkAccelerationsAgree(const CalibrationInput& input, const StatedSigns& s
 // Detection of wrong axes of an IMU, if camera, gyroscope and accelerometer cannot be parts of one
 // right-handed rig. All 48 permutations and signs of the accelerometer's axes are tested, and the one with
 // which accelerations agree with positions is reported.
-
 struct AxesCause {
   std::string problem, advice;
   bool negated = false;  // only the sign of accelerations is wrong, as for a mirrored image (mirror_check.h)

@@ -21,7 +21,6 @@ AlignedCamera alignCamera(const CameraData& camera, const CalibrationInput& inpu
 // transformed to the first IMU sample gives the same rotation,
 //   world_from_first = world_from_camera * camera_from_imu * first_from_imu(t)^-1,
 // up to slow drift. The mirrored pose of a plane, and a misidentified board, give others.
-
 struct PoseConsistency {
   int swapped = 0;         // to the plane's other pose
   int dropped = 0;         // neither pose fits

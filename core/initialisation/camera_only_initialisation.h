@@ -20,7 +20,6 @@ void initialiseCamerasAlone(const CalibrationInput& input, const StatedSigns& st
 // Relative pose of two cameras that see the board alternately, without an IMU for the motion in between: when
 // one loses the board and the other detects it, both are extrapolated to the middle of the gap at constant
 // speed (docs/maths.md, 10.5).
-
 struct BridgedCamera {
   MeanPose reference_from_camera;
   double time_offset_s = 0.0;  // reference_time = camera_time + time_offset_s

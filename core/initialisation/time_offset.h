@@ -38,7 +38,6 @@ std::vector<TimeOffsetPeak> correlateTimeOffset(const std::vector<CameraPose>& p
 // Time offsets of parts of a recording, compared with one for the whole recording. They reveal clock steps
 // (lost packets, a resynchronisation), while a single offset is wrong for a part and contradicted by circles
 // that look like outliers.
-
 struct OffsetPart {
   double begin_s = 0.0, end_s = 0.0;  // camera clock
   double time_offset_s = 0.0, time_offset_std_s = 0.0;

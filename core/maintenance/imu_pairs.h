@@ -18,7 +18,6 @@ namespace evical {
 // Gaussian smoothing of an IMU's samples, at any time: linear and the same for all IMUs, so that relations
 // between their signals are also valid for the smoothed ones, for any sampling. For equidistant samples and a
 // sigma of at least two intervals, the sum equals the integral to better than 1e-15: nothing is interpolated.
-
 struct SmoothPoint {
   Eigen::Vector3d rate_rad_s, rate_slope_rad_s2, force_m_s2, force_slope_m_s3;
   Eigen::Matrix3d rate_products;  // of the rates' components, for centripetal accelerations

@@ -23,7 +23,6 @@ Eigen::MatrixXd congruence(const Eigen::MatrixXd& a, const Eigen::MatrixXd& m); 
 
 // Inverse of symmetric matrices whose columns have different units: scaled to a unit diagonal before
 // factorisation.
-
 class ScaledInverse {
  public:
   explicit ScaledInverse(const Eigen::MatrixXd& symmetric)

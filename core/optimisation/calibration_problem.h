@@ -20,7 +20,6 @@ namespace evical {
 // PlusJacobian is [I; 0]: cost functions write derivatives with respect to delta into the first three of the
 // four columns, and zero into the last. This avoids the chain rule through the quaternion. These blocks'
 // Jacobians can therefore not be compared with derivatives by the quaternion's numbers.
-
 class So3Manifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return 4; }

@@ -35,7 +35,6 @@ std::vector<std::string> notesOfUnused(const CalibrationInput& input, std::size_
 double rmsPerAxis(const std::vector<double>& norms, const std::vector<std::uint8_t>& used);
 
 // Gyroscope or accelerometer samples that share spline segments and bias knots: one block of the batch each.
-
 struct SampleRun {
   std::size_t imu;
   SegmentTimes segment;

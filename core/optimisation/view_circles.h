@@ -76,7 +76,6 @@ auto blocksOfView(State& state, const SegmentTimes& segments, std::size_t camera
 // change in proportion to the centre's distance from its mean place, of pixel_error / a^1.5 with a the
 // RMS of these distances in pixels, as many independent errors as pixels. Not estimated, only allowed
 // for in the reported sigmas.
-
 class PixelErrors {
  public:
   PixelErrors(const CameraData& camera, const Board& board, double pixel_error_px);

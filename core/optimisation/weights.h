@@ -30,8 +30,6 @@ struct UnexcitedAxes {
 UnexcitedAxes stillAxes(const CalibrationInput& input, const CalibrationState& state, const Weights& weights,
                         std::size_t imu);
 
-struct CalibrationInput;
-
 // Ratios of residuals to their given sigmas, per sensor. The batch divides its weights by them, so that wrong
 // noise densities or circle covariances do not change the balance between camera and IMU.
 struct NoiseScales {

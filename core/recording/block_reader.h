@@ -84,7 +84,6 @@ class EventOrder {
 };
 
 // Random access to a file's bytes, read in large blocks.
-
 class RandomAccessFile {
  public:
   // Throws CalibrationError (BadInput) if the file cannot be opened.

@@ -10,7 +10,6 @@
 namespace evical {
 
 // Limits beyond which `inspect` and the pipeline report a fault of a recording.
-
 struct InspectionOptions {
   double event_gap_s = 0.1;             // longest time without any event
   double imu_gap_periods = 1.8;         // longest time between IMU samples, in their median interval

@@ -133,7 +133,6 @@ void StampFilter<Item>::drop(std::vector<Item>& items, std::int64_t from_ns) {
 
 // Step of the time stamps of events. Some drivers and files round them to ms, and give thousands of events
 // the same stamp.
-
 class StampStep {
  public:
   // Call in order of time. Only the first events are checked.

@@ -25,7 +25,6 @@ std::string csvWord(const std::string& text);
 std::string fromCsv(const std::string& cell);
 
 // Reader for Evical's own tables; columns are identified by their names.
-
 class CsvReader {
  public:
   // All members throw CalibrationError (BadInput) if the file cannot be read or a column is missing.

@@ -21,7 +21,6 @@ std::vector<ImuSample> simulateDriveImu(const DriveScenario& scenario, std::size
 std::string driveTrajectoryCsv(const DriveScenario& scenario);
 
 // The motion of a drive (DriveMotion), analytic to its second derivative.
-
 class DriveMotionModel {
  public:
   explicit DriveMotionModel(const DriveScenario& scenario);

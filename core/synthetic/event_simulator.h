@@ -21,7 +21,6 @@ void simulateEvents(const Scenario& scenario, std::size_t camera, const EventSin
                     const RunContext& context = {}, int threads = 2);
 
 // The arbiter that reads out all pixels' events one after the other.
-
 class EventReadout {
  public:
   explicit EventReadout(const EventPixelModel& pixel);

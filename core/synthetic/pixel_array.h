@@ -16,7 +16,6 @@
 namespace evical {
 
 // The light of a board on a flashing screen at event pixels, in consecutive intervals of time.
-
 class FlashingBoard {
  public:
   // Initialised to the light at the beginning.

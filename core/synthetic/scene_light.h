@@ -19,7 +19,6 @@ namespace evical {
 
 // Printed pattern of a board: circles, squares, or tags like Kalibr's AprilGrid, with a border of two modules
 // and a small black square at every corner between tags, or ChArUco boards with usual markers.
-
 class BoardPattern {
  public:
   // `tag_turns`: quarter turns of each tag or marker within its square, clockwise.

@@ -40,10 +40,6 @@ struct RateCurve {
   }
 };
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 struct RecordingOverview {
   bool started = false;       // start_ns and resolution_px are known
   std::int64_t start_ns = 0;  // zero of a calibration: first event or sample of the session's streams

@@ -81,13 +81,8 @@ SurfaceFrame renderFlow(EventSpan events, const std::vector<NormalFlow>& flow, s
 
 QRgb flowColour(double x, double y);  // colour of a direction
 
-}  // namespace evical::ui
-
 // Surface of active events at the cursor, kept between pictures: while the cursor advances, only the events
 // since the last picture are read. Not thread-safe.
-
-namespace evical::ui {
-
 class DecayingSurface {
  public:
   // The unfaded events before time_ns, drawn like renderEvents().

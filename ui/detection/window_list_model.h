@@ -32,10 +32,6 @@ std::vector<WindowRow> windowRows(const CalibrationRun& run, std::size_t camera)
 // Nearest to the middle of all, among the windows with a complete board, or else any part of it.
 std::optional<double> middleOfSeen_s(const std::vector<WindowReport>& windows);
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 class WindowPictures;
 
 class WindowListModel : public QAbstractTableModel {

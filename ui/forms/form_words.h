@@ -11,11 +11,7 @@ namespace evical::ui {
 // "board.spacing_m: 0.05" becomes "spacing 50 mm", "spacing 0.05 m" becomes "spacing 50 mm".
 QString inFormWords(QString text);
 
-}  // namespace evical::ui
-
 // Label with wrapped text for a form with rows that are hidden at times.
-
-namespace evical::ui {
 
 // Its height does not depend on its width: if it did, QFormLayout of Qt 6.4 would write beyond its arrays
 // when a row is hidden. The role is one of the style sheet, or empty.

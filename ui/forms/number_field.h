@@ -45,12 +45,7 @@ class NumberField : public QLineEdit {
   QAction* refused_;  // mark of refused input
 };
 
-}  // namespace evical::ui
-
 // Spin box with a decimal point in every country: all other numbers of the window have one.
-
-namespace evical::ui {
-
 class DecimalBox final : public QDoubleSpinBox {
  public:
   explicit DecimalBox(QWidget* parent = nullptr) : QDoubleSpinBox(parent) { setLocale(QLocale::c()); }

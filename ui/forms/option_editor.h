@@ -63,7 +63,6 @@ class OptionEditor : public QWidget {
 
 // Slider for a number over its range, next to its input field: logarithmic if the range spans several powers
 // of ten, and in integers if the option is one.
-
 class OptionSlider : public QSlider {
   Q_OBJECT
 

@@ -18,9 +18,6 @@ class QLabel;
 class QLineEdit;
 class QToolButton;
 class QVBoxLayout;
-class QLabel;
-class QToolButton;
-class QVBoxLayout;
 
 namespace evical::ui {
 
@@ -65,7 +62,6 @@ class OptionForm : public QWidget {
 };
 
 // Options of one stage under a heading that collapses them.
-
 class OptionGroup : public QWidget {
   Q_OBJECT
 

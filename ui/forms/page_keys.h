@@ -17,13 +17,8 @@ void addPageKey(QWidget* page, const QKeySequence& key, std::function<void()> ac
 // Buttons of the page no longer take the focus when clicked: otherwise Space would press them again.
 void leaveFocusToKeys(QWidget* page);
 
-}  // namespace evical::ui
-
 // Ctrl+Z in a text field undoes typing. Without typed text, fields would still consume the key; this filter
 // on the application passes it to the window's undo instead.
-
-namespace evical::ui {
-
 class SessionUndoKeys : public QObject {
  public:
   using QObject::QObject;

@@ -67,10 +67,6 @@ class TaskJobOf : public TaskJob {
   std::shared_ptr<const Found> found_;
 };
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 // Result with the inputs of its files.
 struct CheckedResult {
   CheckInput input;

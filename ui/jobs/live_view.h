@@ -70,10 +70,6 @@ class Mailbox {
   bool pending_ = false;
 };
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 // Views are copied once and never changed; a list of them needs one pointer per view.
 using SharedViews = std::vector<std::shared_ptr<const BoardView>>;
 SharedViews sharedViews(const std::shared_ptr<const BoardObservations>& observations);

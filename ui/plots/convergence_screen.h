@@ -74,7 +74,6 @@ class ConvergenceScreen : public QWidget {
 };
 
 // Stages of the optimisation as text.
-
 struct StageWords {
   QString name;  // "Stage 2: + 1 quantity"
   QString help;  // "Stage 2: + gyroscope scale and misalignment"

@@ -47,12 +47,8 @@ class SignalTab : public QWidget {
   QStackedWidget* below_;
 };
 
-}  // namespace evical::ui
-
 // An IMU's measured signal, its prediction by a trajectory, and the residual: prepared for drawing in any
 // thread.
-
-namespace evical::ui {
 
 inline constexpr int kShownLags = 100;  // samples, of autocorrelations
 

@@ -193,10 +193,6 @@ void addGrid(ShapeBuilder& shapes, const Vector3d& centre_m, const Vector3d& up,
   }
 }
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 void addSampleScene(vtkRenderer* renderer) {
   const RigidTransform pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, -0.5}};
   auto track = std::make_shared<TrajectoryTrack>();

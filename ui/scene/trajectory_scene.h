@@ -22,7 +22,6 @@ class vtkRenderer;
 namespace evical::ui {
 
 // Mapping of values to colours, and its colour bar.
-
 struct ColourScale {
   QString title;  // with unit
   double high = 1.0;

@@ -57,11 +57,7 @@ std::optional<RigInstant> rigAt(const CalibrationState& state, double camera_tim
 // grids.
 double roundedUp(double value);
 
-}  // namespace evical::ui
-
 // Events around the cursor's time on the image plane of the camera's frustum.
-
-namespace evical::ui {
 
 // Access to a camera's events by time, usable in another thread.
 struct EventLookup {

@@ -124,10 +124,6 @@ QString stillMissing(const RecordingAssessment& assessment) {
   return missing.isEmpty() ? QString() : QObject::tr("Still missing: %1").arg(missing.join(' '));
 }
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 QIcon verdictIcon(CalibrationStatus status) {
   switch (status) {
     case CalibrationStatus::Ok:

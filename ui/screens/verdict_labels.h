@@ -25,11 +25,7 @@ QString summaryOf(const RecordingAssessment& assessment);
 QString summaryWhileWritten(const RecordingAssessment& assessment);
 QString stillMissing(const RecordingAssessment& assessment);  // empty: nothing
 
-}  // namespace evical::ui
-
 // Icon of a verdict, distinct by colour and by shape.
-
-namespace evical::ui {
 
 QIcon verdictIcon(CalibrationStatus status);
 

@@ -17,11 +17,7 @@ void showTextAsPlain(QApplication& application);
 // The tool tip of this widget is rich text of our own, with names escaped.
 void useRichToolTip(QWidget& widget);
 
-}  // namespace evical::ui
-
 // Labels whose text changes many times a second.
-
-namespace evical::ui {
 
 // Fixes the size to that of the longest text: a label that changes its size triggers a layout of its
 // surroundings.

@@ -46,7 +46,6 @@ QIcon icon(const QString& name, const QColor& colour);
 QIcon icon(const QString& name, QPalette::ColorRole role);
 
 // Fusion style with outlines that are visible in dark themes, where its own are darker than the window.
-
 class OutlinedStyle final : public QProxyStyle {
  public:
   OutlinedStyle();

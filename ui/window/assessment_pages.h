@@ -22,7 +22,6 @@ void wireRepeat(RepeatScreen& screen, Workbench& workbench, SessionFiles& files)
 // Proposals for the old result: the shown run, then the stored runs; and the dialogs that choose one.
 
 class OldResultRow;
-struct Workbench;
 
 void wireOldResult(OldResultRow& row, QWidget& page, Workbench& workbench);
 

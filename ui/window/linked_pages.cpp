@@ -297,10 +297,6 @@ void wireFollowing(const Pages& pages, Workbench& workbench) {
   });
 }
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 RigPage::RigPage(QWidget* page, const QString& what, QWidget* parent) : QStackedWidget(parent) {
   auto* const note = new QWidget(this);
   auto* const layout = new QVBoxLayout(note);

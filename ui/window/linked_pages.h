@@ -18,23 +18,12 @@ void calibrateRig(Workbench& workbench);
 
 void wireLinkedPages(const Pages& pages, Workbench& workbench);
 
-}  // namespace evical::ui
-
 // Follows a recording that another program is still writing: offers it, checks it again as it grows, and
 // makes all pages read it again at its end.
 
-namespace evical::ui {
-
-struct Workbench;
-
 void wireFollowing(const Pages& pages, Workbench& workbench);
 
-}  // namespace evical::ui
-
 // Wraps a page that is for rigs only; while a camera alone is calibrated, shows a note instead.
-
-namespace evical::ui {
-
 class RigPage : public QStackedWidget {
   Q_OBJECT
 

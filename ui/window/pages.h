@@ -73,9 +73,7 @@ void wirePages(const Pages& pages, Workbench& workbench, SessionFiles& files, Le
 
 // Content of the screens during the calibration of a camera alone, and its result.
 
-class LensFiles;
 struct Pages;
-struct Workbench;
 
 // Call after the other pages are wired: the slots for a camera alone must run after those for a rig.
 void wireLensPages(const Pages& pages, Workbench& workbench, LensFiles& files);

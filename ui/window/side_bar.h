@@ -58,14 +58,9 @@ class SideBar : public QFrame {
   std::optional<std::pair<int, std::optional<CalibrationStatus>>> verdict_;  // last one set
 };
 
-}  // namespace evical::ui
-
 // The pages of a window. Its size is independent of their contents (the parent sets the minimum): otherwise
 // every change of size in the window would trigger a layout of the wrapped texts of all pages, hidden or not,
 // which took half of a run's computing time.
-
-namespace evical::ui {
-
 class PageStack final : public QStackedWidget {
  public:
   using QStackedWidget::QStackedWidget;

@@ -63,7 +63,6 @@ class StepsPanel : public QWidget {
 };
 
 // One row of the steps panel.
-
 enum class StepState { Pending, Running, Done, Failed, Cancelled };
 
 class StepRow : public QWidget {

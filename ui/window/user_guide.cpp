@@ -248,10 +248,6 @@ void addGuidePictures(QTextDocument& document, int width_px, double pixel_ratio)
     add(kMotion + motion.name, drawingOf(motion, width_px, pixel_ratio));
 }
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 QDialog* makeReadingDialog(QWidget* window, const QString& name, const QString& title) {
   auto* const dialog = new QDialog(window);
   dialog->setObjectName(name);

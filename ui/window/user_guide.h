@@ -31,7 +31,6 @@ QStringList guidePictures();  // names of the embedded pictures
 
 class QDialog;
 class QString;
-class QWidget;
 
 namespace evical::ui {
 

@@ -50,11 +50,7 @@ struct Workbench {
   }
 };
 
-}  // namespace evical::ui
-
 // Splits long work over several turns of the event loop, so that no single turn is noticeably long.
-
-namespace evical::ui {
 
 // Calls `act` after the given number of turns of the event loop; each turn handles the pending events,
 // layouts and paintings.

@@ -40,7 +40,6 @@ Batch readBatch(const std::filesystem::path& file);
 
 // Outcome of a batch job, stored in FOLDER/jobs/NAME.yaml. It is written last: a job without this file must
 // be run.
-
 enum class JobEnd {
   NotRun,       // the batch was stopped before
   Elsewhere,    // another process runs it

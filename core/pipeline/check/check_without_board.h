@@ -23,7 +23,6 @@
 namespace evical {
 
 // One pass over a recording without a board: rotation of each event camera, and samples of each IMU.
-
 struct BoardlessPass {
   std::int64_t start_ns = 0;          // first event or sample of the session's streams
   std::vector<CameraRecord> cameras;  // by camera of the session; empty for frames and points
@@ -39,7 +38,6 @@ BoardlessPass readWithoutBoard(const Session& session, const RunContext& context
 
 // Rotation of a camera over time from its events: bursts, slopes of their times, and the motion in each
 // window.
-
 class CameraMotion {
  public:
   // `start_ns`: start of the recording, the origin of the windows' times.

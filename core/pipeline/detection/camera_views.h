@@ -26,7 +26,6 @@
 namespace evical {
 
 // Data of one camera that the reading thread passes to the window thread.
-
 struct CameraBatch {
   std::size_t camera = 0;
   std::vector<EdgeCrossing> bursts;
@@ -60,7 +59,6 @@ struct ViewRequest {
 std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewRequest& request);
 
 // Views of the board from frames, which were chosen by their rate: decoded, searched, tracked.
-
 class FrameViews final : public CameraViews {
  public:
   FrameViews(const CameraBatch& first, const ViewRequest& request);
@@ -89,7 +87,6 @@ class FrameViews final : public CameraViews {
 
 // Views from points of the board that another program has measured: points with the same timestamp form a
 // view.
-
 class PointViews final : public CameraViews {
  public:
   PointViews(const CameraBatch& first, const ViewRequest& request);
@@ -117,7 +114,6 @@ class PointViews final : public CameraViews {
 };
 
 // Views of a blinking board from events.
-
 class BlinkViews final : public CameraViews {
  public:
   BlinkViews(const CameraBatch& first, const ViewRequest& request);

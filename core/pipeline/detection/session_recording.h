@@ -85,7 +85,6 @@ class SessionRecording {
 };
 
 // Time range of a session, and the decision when the rest of a recording need not be read.
-
 class SessionTimeRange {
  public:
   // `sensors`: number of sensors.

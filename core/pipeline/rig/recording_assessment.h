@@ -78,7 +78,6 @@ CheckedRecording checkRecording(const Session& session, const RunContext& contex
 const char* nameOf(AssessedThing thing);
 
 // Motion of a recording per axis (rotation and acceleration), which makes the calibration observable.
-
 struct AssessedMotion {
   Eigen::Vector3d turn_rad_s = Eigen::Vector3d::Zero();         // RMS about the mean, per axis
   Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();  // the same, without gravity if that is known

@@ -65,7 +65,6 @@ std::vector<OptionRow> documentedOptions(const CalibrationOptions& options = {})
 std::vector<OptionRow> differingOptions(const CalibrationOptions& options);
 
 // Criteria for a changed calibration.
-
 struct CheckOptions {
   double stability_rotation_deg;
   double stability_translation_mm;

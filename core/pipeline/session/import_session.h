@@ -43,7 +43,6 @@ struct ImportedFiles {
 ImportedFiles importFiles(const ImportRequest& request, const std::filesystem::path& output);
 
 // Contents of the files of an import, by program.
-
 enum class ImportKind { EkalibrConfiguration, KalibrTarget, KalibrImu, KalibrCamchain, Intrinsics, LensFile };
 
 struct ImportSource {

@@ -46,7 +46,6 @@ struct ArrayHeader {
 ArrayHeader readArrayHeader(ByteStream& bytes, const std::string& place);
 
 // The few kinds of Python literals in headers of NumPy arrays.
-
 struct Literal {
   enum class Kind { None, Truth, Number, Text, List, Dictionary };
   Kind kind = Kind::None;

@@ -118,10 +118,6 @@ void AssessmentScreen::changeEvent(QEvent* event) {
   QWidget::changeEvent(event);
 }
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 QWidget* emptyHint(const QString& text, QWidget* parent) {
   constexpr int kText_px = 560;
   auto* const empty = new QWidget(parent);

@@ -85,7 +85,6 @@ QWidget* emptyHint(const QString& text, QWidget* parent);
 // Verdict of a page: a mark by colour and shape, the verdict, and its reason.
 
 class QLabel;
-class QVBoxLayout;
 
 namespace evical::ui {
 

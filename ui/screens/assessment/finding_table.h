@@ -41,10 +41,6 @@ class CopyTable : public QTreeWidget {
   int first_px_ = 0;  // width of its cells
 };
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 class FindingTable : public CopyTable {
   Q_OBJECT
 

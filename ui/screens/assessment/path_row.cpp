@@ -85,10 +85,6 @@ void PathRow::setEnabled(bool enabled) {
   choose_->setEnabled(enabled);
 }
 
-}  // namespace evical::ui
-
-namespace evical::ui {
-
 OldResultRow::OldResultRow(const QString& object_name, QGridLayout& grid, QWidget* parent)
     : PathRow(object_name, tr("&Old result"),
               tr("A folder written by a calibration or an export, or its result.yaml"), grid, parent),

@@ -49,12 +49,7 @@ class PathRow : public QObject {
   bool by_hand_ = false;
 };
 
-}  // namespace evical::ui
-
 // Row for an old result in a form: a folder, a file, or one of the session's runs.
-
-namespace evical::ui {
-
 class OldResultRow : public PathRow {
   Q_OBJECT
 

@@ -54,7 +54,6 @@ class BoardsForm : public QWidget {
 };
 
 // Chooses the board in the form by name, adds one, removes one. A single board needs no choice.
-
 class BoardChooser : public QWidget {
   Q_OBJECT
 

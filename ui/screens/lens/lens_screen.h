@@ -88,12 +88,7 @@ class LensScreen : public QWidget {
   QMenu* programs_;
 };
 
-}  // namespace evical::ui
-
 // File formats in which a lens can be saved.
-
-namespace evical::ui {
-
 struct LensFile {
   const char* title;  // shown
   const char* name;   // in core (pipeline/intrinsics_files.h)

@@ -61,7 +61,6 @@ class StartScreen : public QWidget {
 
 // Pictures of two of the three steps on the start page: a sheet with a board, and the events of a moving
 // board. The step between them is a MotionPicture.
-
 class StartPicture : public QWidget {
  public:
   enum class Shows { Sheet, Events };

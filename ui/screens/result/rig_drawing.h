@@ -70,7 +70,6 @@ class RigDrawing : public QWidget {
 };
 
 // Placement of texts in a drawing without overlaps.
-
 class LabelPlaces {
  public:
   explicit LabelPlaces(const QRectF& area) : area_(area) {}
