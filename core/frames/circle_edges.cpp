@@ -102,7 +102,7 @@ struct Fit {
 
 std::optional<Fit> fit(std::vector<EdgePoint> points, const Ellipse& ellipse) {
   constexpr double kOutlier = 3.5;  // in RMS errors
-  for (int detections = 0;; ++detections) {
+  for (int round = 0;; ++round) {
     if (static_cast<int>(points.size()) < kFewestEdgePoints) return std::nullopt;
     Eigen::Matrix<double, 5, 5> sums = Eigen::Matrix<double, 5, 5>::Zero();
     Shift products = Shift::Zero();
@@ -125,7 +125,7 @@ std::optional<Fit> fit(std::vector<EdgePoint> points, const Ellipse& ellipse) {
     const auto dropped = std::erase_if(
         points, [&](const EdgePoint& p) { return std::abs(error(p)) > kOutlier * result.rms_px; });
     constexpr int kMaxPasses = 3;
-    if (dropped == 0 || detections >= kMaxPasses) return result;
+    if (dropped == 0 || round >= kMaxPasses) return result;
   }
 }
 

@@ -183,7 +183,7 @@ WindowTrace BoardTracker::track(const WindowSlot& slot, const BoardMotion& last)
 
 void BoardTracker::reconsiderPlacement(const WindowSlot& slot, WindowTrace& trace) {
   if (!placement_watch_.isDue()) {
-    placement_watch_.detections();
+    placement_watch_.skip();
     return;
   }
   const std::optional<Eigen::Matrix3d> shift =

@@ -44,7 +44,7 @@ class PlacementWatch {
 
   void begin();  // after a new detection of the board: all placements are open
   bool isDue() const { return wait_ <= 1; }
-  void detections() { --wait_; }  // a window without a check
+  void skip() { --wait_; }  // a window without a check
 
   // Checks one tracked window. Returns the shift to the rival that explained enough consecutive windows
   // better, or nothing.

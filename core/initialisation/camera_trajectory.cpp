@@ -13,7 +13,7 @@ namespace evical {
 int resolveBySmoothness(std::vector<CameraPose>& poses, double max_pair_s) {
   constexpr int kPasses = 3;
   int swapped = 0;
-  for (int detections = 0; detections < kPasses; ++detections) {
+  for (int round = 0; round < kPasses; ++round) {
     for (std::size_t k = 0; k < poses.size(); ++k) {
       if (!poses[k].other_world_from_camera) continue;
       const auto strain_rad = [&](const RigidTransform& candidate) {

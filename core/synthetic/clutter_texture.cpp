@@ -72,7 +72,7 @@ Image clouds(int size, Random& random) {
     Image octave(size);  // from the same noise, shifted
     for (int y = 0; y < size; ++y)
       for (int x = 0; x < size; ++x) octave.at(x, y) = white.at(x + 97 * radius, y + 61 * radius);
-    for (int detections = 0; detections < 6; ++detections) boxRows(octave, radius);
+    for (int round = 0; round < 6; ++round) boxRows(octave, radius);
     normalise(octave);
     for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += octave.values[i];
   }

@@ -96,11 +96,11 @@ class PacketSorter {
                                        [](const Event& event, std::int64_t t) { return event.time_ns < t; });
     waiting_.assign(rest, events_.end());
     events_.erase(rest, events_.end());
-    readout_.detections(events_);
+    readout_.pass(events_);
     return events_;
   }
   EventSpan rest() {
-    readout_.detections(waiting_);
+    readout_.pass(waiting_);
     return waiting_;
   }
 
@@ -156,7 +156,7 @@ EventReadout::EventReadout(const EventPixelModel& pixel)
     : turn_ns_(pixel.readout_rate_hz > 0.0 ? 1e9 / pixel.readout_rate_hz : 0.0),
       longest_wait_ns_(1e9 * pixel.longest_wait_s) {}
 
-void EventReadout::detections(std::vector<Event>& events) {
+void EventReadout::pass(std::vector<Event>& events) {
   if (turn_ns_ <= 0.0) return;
   if (origin_ns_ == 0 && !events.empty()) origin_ns_ = events.front().time_ns;
   std::erase_if(events, [&](Event& event) {

@@ -27,7 +27,7 @@ class EventReadout {
 
   // Events in time order, packet after packet: their stamps become the readout times, and events that would
   // have to wait too long are dropped.
-  void detections(std::vector<Event>& events);
+  void pass(std::vector<Event>& events);
 
  private:
   std::int64_t origin_ns_ = 0;  // origin of floating-point times

@@ -41,7 +41,7 @@ struct Spread {
 };
 
 struct Seen {
-  BoardlessPass detections;
+  BoardlessPass pass;
   double own_s = 0.0;  // processor time without the simulation
 };
 
@@ -49,11 +49,11 @@ Seen see(const Scenario& scenario, const CalibrationOptions& options) {
   test::SimulatedRecord camera = test::simulatedRecord(scenario, options);
   Seen seen;
   seen.own_s = camera.processor_s;
-  seen.detections.start_ns = scenario.start_ns;
-  seen.detections.cameras.push_back(std::move(camera.record));
-  seen.detections.kinds.push_back(CameraKind::Events);
+  seen.pass.start_ns = scenario.start_ns;
+  seen.pass.cameras.push_back(std::move(camera.record));
+  seen.pass.kinds.push_back(CameraKind::Events);
   for (std::size_t k = 0; k < scenario.imus.size(); ++k)
-    seen.detections.imus.push_back({scenario.imus[k].name, {}, simulateImu(scenario, k)});
+    seen.pass.imus.push_back({scenario.imus[k].name, {}, simulateImu(scenario, k)});
   return seen;
 }
 
@@ -87,7 +87,7 @@ Outcome checked(const Scenario& scenario) {
   input.session.options.optimisation.edit().threads = 1;
   Seen seen = see(scenario, input.session.options);
   const double before_s = test::threadCpu_s();
-  Outcome outcome{checkWithoutBoard(input, std::move(seen.detections)).check, 0.0, scenario.duration_s};
+  Outcome outcome{checkWithoutBoard(input, std::move(seen.pass)).check, 0.0, scenario.duration_s};
   outcome.own_s = seen.own_s + test::threadCpu_s() - before_s;
   return outcome;
 }

@@ -53,8 +53,8 @@ void LiveView::windowsDetected(std::size_t camera, const BoardObservations& so_f
   detections.put(std::make_shared<LiveDetections>(detected_));
 }
 
-void LiveView::intrinsicsPassDone(int detections, const IntrinsicsResult& so_far) {
-  passes_.push_back({detections, so_far.views_found, so_far.reprojection_rms_px, so_far.moved_px});
+void LiveView::intrinsicsPassDone(int pass, const IntrinsicsResult& so_far) {
+  passes_.push_back({pass, so_far.views_found, so_far.reprojection_rms_px, so_far.moved_px});
   passes.put(std::make_shared<std::vector<LensPass>>(passes_));
 }
 

@@ -108,7 +108,7 @@ class LiveView final : public CalibrationObserver {
   FrontEndObserver* windowObserver(std::size_t camera, const BoardTracker& tracker) override;
   void windowsDetected(std::size_t camera, const BoardObservations& so_far) override;
   void detectionDone(const CalibrationInput&) override { detection_done = true; }
-  void intrinsicsPassDone(int detections, const IntrinsicsResult& so_far) override;
+  void intrinsicsPassDone(int pass, const IntrinsicsResult& so_far) override;
   void initialisationStepDone(std::string_view step, std::string_view subject, std::string_view result,
                               double duration_s) override;
   void iterationDone(const IterationRecord& iteration, const CalibrationState& state) override;

@@ -64,14 +64,14 @@ MotionIntake intakeOf(std::size_t camera, const Session& session, const SessionR
 
 BoardlessPass readWithoutBoard(const Session& session, const RunContext& context) {
   context.progress.stageStarted(nameOf(CalibrationStage::Detect));
-  BoardlessPass detections;
+  BoardlessPass pass;
   {
     SessionRecording recording(session, context.stop);
-    detections.start_ns = recording.start_ns();
+    pass.start_ns = recording.start_ns();
     std::vector<MotionIntake> intakes;
     for (std::size_t camera = 0; camera < session.cameras.size(); ++camera)
       intakes.push_back(intakeOf(camera, session, recording));
-    SessionTimeRange range(session, session.cameras.size() + session.imus.size(), detections.start_ns);
+    SessionTimeRange range(session, session.cameras.size() + session.imus.size(), pass.start_ns);
     SensorPacket packet;
     while (recording.read(packet) && !range.isOver(packet)) {
       context.throwIfStopped();
@@ -83,25 +83,25 @@ BoardlessPass readWithoutBoard(const Session& session, const RunContext& context
     context.throwIfStopped();
     range.checkBegin();
     for (MotionIntake& intake : intakes) {
-      detections.kinds.push_back(intake.kind);
-      detections.cameras.emplace_back();
+      pass.kinds.push_back(intake.kind);
+      pass.cameras.emplace_back();
       if (intake.kind != CameraKind::Events) continue;
-      detections.cameras.back() = intake.finish();
-      intake.events->report(detections.faults);
+      pass.cameras.back() = intake.finish();
+      intake.events->report(pass.faults);
       if (intake.events->eventCount() == 0)
         throw badInput(
             session.recording.string(),
-            fmt::format("stream {} has no events{}", session.cameras[detections.cameras.size() - 1].stream,
+            fmt::format("stream {} has no events{}", session.cameras[pass.cameras.size() - 1].stream,
                         session.time_range_s ? " in " + howTo(HowTo::LimitTime) : ""),
             "Check the recording " + howTo(HowTo::Inspect));
     }
     const std::vector<RecordingFault> faults = recording.faults();
-    detections.faults.insert(detections.faults.end(), faults.begin(), faults.end());
+    pass.faults.insert(pass.faults.end(), faults.begin(), faults.end());
   }
-  DetectionResult samples = readImus(session, detections.start_ns, context);
-  detections.imus = std::move(samples.imus);
-  detections.imu_stamp_steps_s = std::move(samples.imu_stamp_steps_s);
-  return detections;
+  DetectionResult samples = readImus(session, pass.start_ns, context);
+  pass.imus = std::move(samples.imus);
+  pass.imu_stamp_steps_s = std::move(samples.imu_stamp_steps_s);
+  return pass;
 }
 
 CameraMotion::CameraMotion(const CameraIntrinsics& lens, const CalibrationOptions& options,
@@ -185,8 +185,8 @@ const char* nameOfAxis(const Eigen::Vector3d& direction) {
 
 class BoardlessCheck {
  public:
-  BoardlessCheck(const CheckInput& input, BoardlessPass detections, const RunContext& context)
-      : input_(input), pass_(std::move(detections)), context_(context) {
+  BoardlessCheck(const CheckInput& input, BoardlessPass pass, const RunContext& context)
+      : input_(input), pass_(std::move(pass)), context_(context) {
     CalibrationCheck& check = out_.check;
     check.notes = input.notes;
     check.false_alarms = input.session.options.check->false_alarms;
@@ -354,9 +354,9 @@ CheckRun checkWithoutBoard(const CheckInput& input, const RunContext& context) {
   return checkWithoutBoard(input, readWithoutBoard(input.session, context), context);
 }
 
-CheckRun checkWithoutBoard(const CheckInput& input, BoardlessPass detections, const RunContext& context) {
+CheckRun checkWithoutBoard(const CheckInput& input, BoardlessPass pass, const RunContext& context) {
   context.progress.stageStarted(nameOf(CalibrationStage::Optimise));
-  return BoardlessCheck(input, std::move(detections), context).run();
+  return BoardlessCheck(input, std::move(pass), context).run();
 }
 
 }  // namespace evical

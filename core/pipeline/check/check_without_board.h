@@ -61,6 +61,6 @@ class CameraMotion {
 CheckRun checkWithoutBoard(const CheckInput& input, const RunContext& context);
 
 // The same from data that were read before.
-CheckRun checkWithoutBoard(const CheckInput& input, BoardlessPass detections, const RunContext& context = {});
+CheckRun checkWithoutBoard(const CheckInput& input, BoardlessPass pass, const RunContext& context = {});
 
 }  // namespace evical

@@ -143,7 +143,7 @@ def load(path):
         with open(path, encoding='utf-8', newline='') as f: text = f.read()
         if text.startswith('%YAML:1.0\n'): text = text.split('\n', 1)[1]
         if not yaml: return
-        class Loader(yaml.SafeLoader): detections
+        class Loader(yaml.SafeLoader): pass
         Loader.add_constructor('tag:yaml.org,2002:opencv-matrix', lambda l, n: l.construct_mapping(n))
         yaml.load(text, Loader)
     elif ending == '.json':

@@ -47,13 +47,13 @@ void standStill(MotionModel& motion) {
 }
 
 BoardlessPass passOf(const Scenario& scenario, CameraRecord camera) {
-  BoardlessPass detections;
-  detections.start_ns = scenario.start_ns;
-  detections.cameras.push_back(std::move(camera));
-  detections.kinds.push_back(CameraKind::Events);
+  BoardlessPass pass;
+  pass.start_ns = scenario.start_ns;
+  pass.cameras.push_back(std::move(camera));
+  pass.kinds.push_back(CameraKind::Events);
   for (std::size_t k = 0; k < scenario.imus.size(); ++k)
-    detections.imus.push_back({scenario.imus[k].name, {}, simulateImu(scenario, k)});
-  return detections;
+    pass.imus.push_back({scenario.imus[k].name, {}, simulateImu(scenario, k)});
+  return pass;
 }
 
 // Motion like that of the scenario's camera, with this share of its velocity; `stretch`: factor of all image
@@ -99,10 +99,10 @@ CameraRecord seenCamera(const Scenario& scenario) {
 }
 
 // `before`: the rig of the old result.
-CalibrationCheck checkOf(const Scenario& before, BoardlessPass detections) {
+CalibrationCheck checkOf(const Scenario& before, BoardlessPass pass) {
   CheckInput input = checkInputOf(truthOf(before), sessionFor(before));
   input.session.options.egomotion = quickEgomotion();
-  return checkWithoutBoard(input, std::move(detections)).check;
+  return checkWithoutBoard(input, std::move(pass)).check;
 }
 
 const Finding* changedOneForCheckWithoutBoard(const CalibrationCheck& check) {
@@ -185,9 +185,9 @@ class TestCheckWithoutBoard : public QObject {
 
   void withoutAnImu_cannotTell() {
     const Scenario scenario = room(30.0);
-    BoardlessPass detections = passOf(scenario, turningCamera(scenario));
-    detections.imus.clear();
-    const CalibrationCheck check = checkOf(scenario, std::move(detections));
+    BoardlessPass pass = passOf(scenario, turningCamera(scenario));
+    pass.imus.clear();
+    const CalibrationCheck check = checkOf(scenario, std::move(pass));
     QVERIFY(check.verdict == Verdict::CannotTell);
     QVERIFY2(check.reason.find("IMU") != std::string::npos, check.reason.c_str());
     QVERIFY(!check.advice.empty());
@@ -204,11 +204,11 @@ class TestCheckWithoutBoard : public QObject {
   // The camera's motion does not agree with the gyroscope's at all.
   void anotherRigsGyroscope_cannotTell() {
     const Scenario scenario = room(30.0);
-    BoardlessPass detections = passOf(scenario, turningCamera(scenario));
+    BoardlessPass pass = passOf(scenario, turningCamera(scenario));
     Scenario other = scenario;
     other.seed += 1000;
-    detections.imus = passOf(other, {}).imus;
-    const CalibrationCheck check = checkOf(scenario, std::move(detections));
+    pass.imus = passOf(other, {}).imus;
+    const CalibrationCheck check = checkOf(scenario, std::move(pass));
     QVERIFY2(check.verdict == Verdict::CannotTell, check.reason.c_str());
     QVERIFY2(says(check, "one rig"), check.reason.c_str());
   }
