@@ -43,7 +43,7 @@ std::filesystem::path thisProgram() {
   return std::filesystem::read_symlink("/proc/self/exe");
 }
 
-int tellTable(const BatchArguments& arguments, const Batch& batch, std::vector<JobOutcome> outcomes) {
+int printTable(const BatchArguments& arguments, const Batch& batch, std::vector<JobOutcome> outcomes) {
   const std::vector<BatchRow> rows = batchRows(batch, std::move(outcomes), arguments.output);
   writeBatchFiles(arguments.output, rows, kVersion);
   print("{}", batchText(rows));
@@ -69,7 +69,7 @@ int run(const BatchArguments& arguments) {
       throw badInput(arguments.output, "does not contain a batch", "Give the folder of 'evical batch -o'");
     std::vector<JobOutcome> outcomes = collectBatch(batch, folder);
     addQueueStates(batch, folder, outcomes);
-    return tellTable(arguments, batch, std::move(outcomes));
+    return printTable(arguments, batch, std::move(outcomes));
   }
   makeBatchFolder(folder);
   if (arguments.slurm) {
@@ -81,7 +81,7 @@ int run(const BatchArguments& arguments) {
   if (!arguments.job.empty()) return runOne(batch, place, lines);
   const std::stop_token stop = stopOnSignals();
   std::vector<JobOutcome> outcomes = runBatch(batch, place, lines, stop);
-  const int exit_code = tellTable(arguments, batch, std::move(outcomes));
+  const int exit_code = printTable(arguments, batch, std::move(outcomes));
   if (stop.stop_requested()) throw Cancelled{};
   return exit_code;
 }

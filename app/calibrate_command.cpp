@@ -25,14 +25,14 @@
 namespace evical {
 namespace {
 
-void tellEnd(const SessionArguments& arguments, const Session& session, const CalibrationOutcome& outcome,
-             const Console& console, const NewFolder& folder) {
+void reportEnd(const SessionArguments& arguments, const Session& session, const CalibrationOutcome& outcome,
+               const Console& console, const NewFolder& folder) {
   writeUnfinishedRun(arguments.output, folder.wasThere(), session, outcome, kVersion, console.logText());
   if (outcome.error && outcome.error->repair()) printError(tryText(arguments, *outcome.error->repair()));
 }
 
-void tellResult(const SessionArguments& arguments, const Session& session,
-                const std::shared_ptr<const CalibrationRun>& run, Console& console) {
+void printResult(const SessionArguments& arguments, const Session& session,
+                 const std::shared_ptr<const CalibrationRun>& run, Console& console) {
   const NamedResult named = namedResult(session, resultOf(run), kVersion);
   const ExportRemarks remarks = writeResultFiles(arguments.output, session, run, kVersion, console.logText());
   console.stageStarted("done");
@@ -69,9 +69,9 @@ int run(const SessionArguments& arguments) {
   console.announceReplacement(arguments.output, {"result.yaml"});
   const NewFolder folder(arguments.output);
   CalibrationOutcome outcome = calibrated(arguments, session, console);
-  if (outcome.status != RunStatus::Done) tellEnd(arguments, session, outcome, console, folder);
+  if (outcome.status != RunStatus::Done) reportEnd(arguments, session, outcome, console, folder);
   const auto run = std::make_shared<const CalibrationRun>(std::move(outcome).runOrThrow());
-  tellResult(arguments, session, run, console);
+  printResult(arguments, session, run, console);
   return kDone;
 }
 

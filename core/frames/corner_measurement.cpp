@@ -253,12 +253,12 @@ Eigen::Matrix2d modelError_px2(const Eigen::Matrix2d& px_per_m, double half_widt
                                const FrameOptions& options) {
   constexpr double kPower = 1.5;
   const double sigma_px = options.min_sigma_px * std::pow(options.subpixel_window_px / half_width_px, kPower);
-  Eigen::Matrix2d told = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   for (int edge = 0; edge < 2; ++edge) {
     const Eigen::Vector2d normal = Eigen::Vector2d(-px_per_m(1, edge), px_per_m(0, edge)).normalized();
-    told += normal * normal.transpose();
+    information += normal * normal.transpose();
   }
-  return sigma_px * sigma_px * told.inverse();
+  return sigma_px * sigma_px * information.inverse();
 }
 
 double smallestScale(const Eigen::Matrix2d& scale) {

@@ -223,7 +223,7 @@ void BoardTracker::renumberTrack(const Eigen::Matrix3d& shift) {
 // Views of a board that no window distinguished from its rivals are discarded.
 void BoardTracker::endTrack() {
   std::vector<BoardView>& views = observations_.views;
-  if (!placement_watch_.isTold() && open_begin_ < views.size()) {
+  if (!placement_watch_.isDistinguished() && open_begin_ < views.size()) {
     for (std::size_t k = open_begin_; k < views.size(); ++k)
       reportOf(views[k]).outcome = WindowOutcome::Ambiguous;
     views.resize(open_begin_);

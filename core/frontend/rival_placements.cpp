@@ -126,7 +126,7 @@ PlacementWatch::PlacementWatch(const Board& board, const GridOptions& options)
 
 void PlacementWatch::begin() {
   contradicting_ = agreeing_ = wait_ = 0;
-  told_.reset();
+  distinguished_.reset();
 }
 
 std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, const WindowTrace& trace,
@@ -149,9 +149,9 @@ std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, c
     return std::all_of(rivals.begin(), rivals.end(),
                        [&](const PlacementScore& rival) { return isLaid(rival) || behind(rival); });
   };
-  told_ = told_.value_or(false) || all([&](const PlacementScore& rival) {
-            return rival.value() + options_.ambiguity_margin <= laid.value();
-          });
+  distinguished_ = distinguished_.value_or(false) || all([&](const PlacementScore& rival) {
+                     return rival.value() + options_.ambiguity_margin <= laid.value();
+                   });
   // Covered or resting circles are missing without being elsewhere: only visible circles are conclusive.
   const bool surely = all([&](const PlacementScore& rival) {
     return rival.measured + options_.ambiguity_margin < laid.measured;
@@ -164,7 +164,7 @@ std::optional<Eigen::Matrix3d> PlacementWatch::contradicted(const Eigen::Matrix3
   contradicting_ = contradicting_ > 0 && shift == favourite_ ? contradicting_ + 1 : 1;
   favourite_ = shift;
   agreeing_ = 0;
-  told_ = false;
+  distinguished_ = false;
   wait_ = 1;
   if (contradicting_ < options_.contradicting_looks) return std::nullopt;
   contradicting_ = 0;
@@ -174,7 +174,7 @@ std::optional<Eigen::Matrix3d> PlacementWatch::contradicted(const Eigen::Matrix3
 void PlacementWatch::agreed(int in_a_row) {
   contradicting_ = 0;
   agreeing_ = in_a_row;
-  told_ = told_.value_or(false) || isSettled();
+  distinguished_ = distinguished_.value_or(false) || isSettled();
   wait_ = isSettled() ? options_.look_every_windows : 1;
 }
 

@@ -55,7 +55,7 @@ class PlacementWatch {
   bool isSettled() const { return agreeing_ >= options_.contradicting_looks; }
   // False if no check since begin(), or since the last contradiction, ranked the board ahead of all rivals,
   // as is required of a search. True without checks.
-  bool isTold() const { return told_.value_or(true); }
+  bool isDistinguished() const { return distinguished_.value_or(true); }
 
  private:
   std::optional<Eigen::Matrix3d> contradicted(const Eigen::Matrix3d& shift);
@@ -66,7 +66,7 @@ class PlacementWatch {
   Eigen::Matrix3d favourite_ = Eigen::Matrix3d::Identity();
   int contradicting_ = 0, agreeing_ = 0;  // consecutive checks; a check agrees if it leaves no rival open
   int wait_ = 0;                          // windows until the next check
-  std::optional<bool> told_;              // empty: no check yet
+  std::optional<bool> distinguished_;     // empty: no check yet
 };
 
 }  // namespace evical

@@ -222,11 +222,11 @@ void alignFurtherImu(const CalibrationInput& input, std::size_t k, const GyroRot
 }
 
 // Reports new steps to the observer.
-void tellSteps(const std::vector<InitialisationStep>& steps, CalibrationObserver* observer,
-               std::size_t& told) {
-  for (; observer != nullptr && told < steps.size(); ++told)
-    observer->initialisationStepDone(steps[told].name, steps[told].subject, steps[told].result,
-                                     steps[told].duration_s);
+void reportSteps(const std::vector<InitialisationStep>& steps, CalibrationObserver* observer,
+                 std::size_t& reported) {
+  for (; observer != nullptr && reported < steps.size(); ++reported)
+    observer->initialisationStepDone(steps[reported].name, steps[reported].subject, steps[reported].result,
+                                     steps[reported].duration_s);
 }
 
 void keepLenses(const CalibrationInput& input, CalibrationState& state) {
@@ -274,7 +274,7 @@ CameraTrajectory bodyTrajectory(const std::vector<AlignedCamera>& cameras, const
 // it sees.
 std::vector<AlignedCamera> alignCameras(const CalibrationInput& input, const StatedSigns& stated,
                                         const GyroRotation& gyro, const InitialisationOptions& options,
-                                        const RunContext& context, std::size_t& told,
+                                        const RunContext& context, std::size_t& reported,
                                         Initialisation& result) {
   std::vector<AlignedCamera> cameras;
   for (const CameraData& camera : input.cameras) {
@@ -285,7 +285,7 @@ std::vector<AlignedCamera> alignCameras(const CalibrationInput& input, const Sta
     if (!isGiven(camera.prior.time_offset))
       checkRotationsAgree(input, result.agreements.back(), options, context);
     checkGivenRotation(input, stated, cameras.back(), gyro, options);
-    tellSteps(result.steps, context.observer, told);
+    reportSteps(result.steps, context.observer, reported);
     constexpr double kShare = 0.7;
     context.progress.stageProgress(kShare * static_cast<double>(cameras.size()) /
                                    static_cast<double>(input.cameras.size()));
@@ -336,12 +336,12 @@ void alignFurther(const CalibrationInput& input, const StatedSigns& stated,
 Initialisation initialiseStraight(const CalibrationInput& input, const StatedSigns& stated,
                                   const InitialisationOptions& options, const RunContext& context) {
   Initialisation result;
-  std::size_t told = 0;
+  std::size_t reported = 0;
   checkInput(input, options);
   if (input.imus.empty()) {
     initialiseCamerasAlone(input, stated, options, context, result);
     keepLenses(input, result.state);
-    tellSteps(result.steps, context.observer, told);
+    reportSteps(result.steps, context.observer, reported);
     context.progress.stageProgress(1.0);
     return result;
   }
@@ -350,7 +350,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const StatedSig
   const GyroRotation gyro(rates, input.start_ns);
   checkTurnsWithCamera(input, imu, gyro, options, context);
   checkGyroscope(imu, gyro, options, result.warnings);
-  std::vector<AlignedCamera> cameras = alignCameras(input, stated, gyro, options, context, told, result);
+  std::vector<AlignedCamera> cameras = alignCameras(input, stated, gyro, options, context, reported, result);
   const TimeRange views = viewRange(cameras);
   checkOverlap(imu, views.begin_s, views.end_s, gyro.begin_s(), gyro.end_s(), options);
   TimeRange range{std::max(views.begin_s - options.margin_s, gyro.begin_s()),
@@ -374,7 +374,7 @@ Initialisation initialiseStraight(const CalibrationInput& input, const StatedSig
     if (k != input.reference_imu) alignFurtherImu(input, k, unbiased, options, context, result);
   }
   result.mirror_doubt = mirrorDoubt(input, stated, all, result.state, result.forces_show_size);
-  tellSteps(result.steps, context.observer, told);
+  reportSteps(result.steps, context.observer, reported);
   context.progress.stageProgress(1.0);
   return result;
 }

@@ -78,7 +78,7 @@ class IterationReporter {
         records_(records) {}
 
   // Reports these names together with the next iteration.
-  void tellReleased(std::vector<std::string> words) { released_ = std::move(words); }
+  void reportReleased(std::vector<std::string> words) { released_ = std::move(words); }
 
   // False if measurements must be assigned again.
   bool report(const SolverIteration& iteration) {
@@ -129,7 +129,7 @@ class Batch {
  private:
   std::vector<ParameterStages> stages() const;
   void solveStage(ParameterStages stage, int index, const SolverLimits& limits);
-  void tellReleased(IterationReporter& reporter);
+  void reportReleased(IterationReporter& reporter);
   void solveLastStage();
   void holdStillAxes();
   bool updateWeights();
@@ -175,7 +175,7 @@ void Batch::solveStage(ParameterStages stage, int index, const SolverLimits& lim
   for (int round = 0; round < options_.max_rounds; ++round) {
     context_.throwIfStopped();
     problem_.build(stage, weights_);
-    tellReleased(reporter);
+    reportReleased(reporter);
     const SolverSummary summary =
         solveNormalEquations(problem_, limits, context_.stop, memory_,
                              [&](const SolverIteration& iteration) { return reporter.report(iteration); });
@@ -195,11 +195,11 @@ void Batch::solveStage(ParameterStages stage, int index, const SolverLimits& lim
 }
 
 // A parameter that is fixed again later (an unexcited axis) counts as released.
-void Batch::tellReleased(IterationReporter& reporter) {
+void Batch::reportReleased(IterationReporter& reporter) {
   std::vector<std::string> released = releasedWords(quantityWords(problem_.quantities()), free_);
   if (released.empty()) return;
   free_.insert(free_.end(), released.begin(), released.end());
-  reporter.tellReleased(std::move(released));
+  reporter.reportReleased(std::move(released));
 }
 
 // Noise scales and outliers, both from all circles and samples; true if anything
@@ -394,7 +394,7 @@ void Batch::reportNotes() {
     solution_.notes.push_back(fmt::format(
         "{}: {} is {:.2g} times its given sigma; the weights use the estimate", sensor, what, scale));
   };
-  const auto sayHeld = [&](const std::string& imu, const char* motion, std::size_t axes, const char* what) {
+  const auto noteHeld = [&](const std::string& imu, const char* motion, std::size_t axes, const char* what) {
     if (axes == 0) return;
     solution_.notes.push_back(
         fmt::format("{}: there is hardly any {} along {} of 3 axes; {} for them", imu, motion, axes, what));
@@ -414,13 +414,13 @@ void Batch::reportNotes() {
     for (std::string& note : notesOfUnused(input_, i, weights_.used_samples[i]))
       solution_.notes.push_back(std::move(note));
     if (options_.estimatesGyroscopeRotations())
-      sayHeld(input_.imus[i].name, "rotation", weights_.held_axes[i].gyroscope.size(),
-              "the gyroscope's misalignment is fixed");
+      noteHeld(input_.imus[i].name, "rotation", weights_.held_axes[i].gyroscope.size(),
+               "the gyroscope's misalignment is fixed");
   }
   if (!input_.imus.empty()) {
-    sayHeld(input_.imus[input_.reference_imu].name, "lever of rotation",
-            weights_.held_axes[input_.reference_imu].axesWithoutRotation().size(),
-            "translations are fixed at 0");
+    noteHeld(input_.imus[input_.reference_imu].name, "lever of rotation",
+             weights_.held_axes[input_.reference_imu].axesWithoutRotation().size(),
+             "translations are fixed at 0");
   }
   if (!solution_.converged) {
     solution_.notes.emplace_back("the optimiser stopped at its iteration limit before it converged");

@@ -57,8 +57,8 @@ std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const Reco
 }
 
 // For default choices: data that users may miss.
-void sayWhatIsLeftOut(const RecordingReader& reader, const RecordingFormat& format,
-                      const ConversionRequest& request, const RunContext& context) {
+void noteLeftOut(const RecordingReader& reader, const RecordingFormat& format,
+                 const ConversionRequest& request, const RunContext& context) {
   if (!request.streams.empty()) return;
   std::string names;
   for (const StreamInfo& stream : reader.streams())
@@ -116,7 +116,7 @@ void findSizes(const ConversionRequest& request, std::vector<StreamInfo>& stream
 }
 
 // Formats of one camera count times from its start, so they cannot store events with wrong timestamps.
-void sayStrays(const StampFilter<Event>& stamps, const RunContext& context) {
+void noteStrays(const StampFilter<Event>& stamps, const RunContext& context) {
   if (stamps.strays() == 0) return;
   context.progress.log(
       LogLevel::Warning,
@@ -154,7 +154,7 @@ void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::ve
     stamps.finish(packet.events);
     if (!packet.events.empty()) writer.write(0, EventSpan(packet.events));
     summary.events += packet.events.size();
-    sayStrays(stamps, context);
+    noteStrays(stamps, context);
   }
   if (exposed)
     context.progress.log(LogLevel::Warning, "Exposure times of frames are not written: the format has none.");
@@ -162,8 +162,8 @@ void copyPackets(RecordingReader& reader, RecordingWriter& writer, const std::ve
 }
 
 // Sessions name streams.
-void sayNewNames(const std::vector<StreamInfo>& streams, const std::vector<std::string>& written,
-                 const RunContext& context) {
+void noteNewNames(const std::vector<StreamInfo>& streams, const std::vector<std::string>& written,
+                  const RunContext& context) {
   std::string text;
   for (std::size_t i = 0; i < streams.size(); ++i)
     if (written[i] != streams[i].name)
@@ -179,7 +179,7 @@ ConversionSummary convertRecording(const ConversionRequest& request, const RunCo
   const std::unique_ptr<RecordingReader> reader = openRecording(request.input);
   checkPaths(request);
   const std::vector<std::size_t> chosen = chosenStreams(*reader, format, request);
-  sayWhatIsLeftOut(*reader, format, request, context);
+  noteLeftOut(*reader, format, request, context);
   ConversionSummary summary;
   summary.format = format.name;
   std::vector<std::size_t> targets(reader->streams().size(), kNotWritten);
@@ -205,7 +205,7 @@ ConversionSummary convertRecording(const ConversionRequest& request, const RunCo
         fmt::format("{} cannot contain these times: they now count from the first event. In a "
                     "session with other sensors, set the camera's clock_offset_s: {:.6f}.",
                     format.name, 1e-9 * static_cast<double>(origin_ns)));
-  if (!format.isFolder()) sayNewNames(summary.streams, writer->streamNames(), context);
+  if (!format.isFolder()) noteNewNames(summary.streams, writer->streamNames(), context);
   return summary;
 }
 

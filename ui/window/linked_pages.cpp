@@ -160,7 +160,7 @@ void wireResiduals(ResidualsScreen& screen, Workbench& workbench) {
 
 // Pages show "press Calibrate" only if that is possible.
 template <class... Screen>
-void tellOfRuns(const CalibrationJob& job, Screen*... screen) {
+void followRuns(const CalibrationJob& job, Screen*... screen) {
   (QObject::connect(&job, &CalibrationJob::started, screen, [screen] { screen->setCalibrating(true); }), ...);
   (QObject::connect(&job, &CalibrationJob::ended, screen, [screen] { screen->setCalibrating(false); }), ...);
 }
@@ -215,7 +215,7 @@ void wireLinkedPages(const Pages& pages, Workbench& workbench) {
                      if (checked->detected)
                        pages.detection->goWhereSeen(checked->detected->detections.cameras);
                    });
-  tellOfRuns(workbench.calibration, pages.result, pages.signal_curves, pages.residuals);
+  followRuns(workbench.calibration, pages.result, pages.signal_curves, pages.residuals);
   // The detection screen may have followed the run.
   QObject::connect(&workbench.calibration, &CalibrationJob::ended, pages.trajectory, [pages] {
     const double time_s = pages.detection->time_s();

@@ -91,7 +91,7 @@ class BatchRunner {
       if (stop_.stop_requested()) waiting_.clear();
       startSome();
       collectEnded();
-      tellRunning();
+      reportRunning();
       if (!running_.empty() || !waiting_.empty()) std::this_thread::sleep_for(kBetweenLooks);
     }
     return std::move(outcomes_);
@@ -114,7 +114,7 @@ class BatchRunner {
       if (place_.wait_for_others)
         waiting_.push_back(k);
       else
-        tellEnd(k, {JobEnd::Elsewhere, "another process runs this job", 0.0, 0.0, {}}, true);
+        reportEnd(k, {JobEnd::Elsewhere, "another process runs this job", 0.0, 0.0, {}}, true);
     }
   }
 
@@ -125,7 +125,7 @@ class BatchRunner {
     if (!lock.taken()) return false;
     if (std::optional<JobOutcome> earlier = readOutcome(place_.folder, job);
         earlier && isSettled(place_.folder, job, *earlier)) {
-      tellEnd(k, std::move(*earlier), true);
+      reportEnd(k, std::move(*earlier), true);
       return true;
     }
     std::vector<std::string> inputs = inputsOf(job);
@@ -179,7 +179,7 @@ class BatchRunner {
     }
   }
 
-  void tellRunning() {
+  void reportRunning() {
     std::vector<RunningJob> shown;
     for (const Process& each : running_) {
       const BatchJob& job = batch_.jobs[each.job];
@@ -190,9 +190,9 @@ class BatchRunner {
 
   void keepEnd(std::size_t k, JobOutcome outcome) {
     writeOutcome(place_.folder, batch_.jobs[k], outcome);
-    tellEnd(k, std::move(outcome), false);
+    reportEnd(k, std::move(outcome), false);
   }
-  void tellEnd(std::size_t k, JobOutcome outcome, bool earlier) {
+  void reportEnd(std::size_t k, JobOutcome outcome, bool earlier) {
     outcomes_[k] = std::move(outcome);
     watcher_.ended(batch_.jobs[k], outcomes_[k], earlier);
   }

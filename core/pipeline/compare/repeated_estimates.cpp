@@ -138,7 +138,7 @@ RepeatedEstimates::RepeatedEstimates(const Session& session, std::vector<Recorde
 
 std::vector<Eigen::Index> RepeatedEstimates::columnsOf(std::size_t recording) const {
   Indices columns;
-  for (const Eigen::Index unknown : told_[recording])
+  for (const Eigen::Index unknown : estimated_[recording])
     columns.push_back(
         *columnOf(columns_[static_cast<std::size_t>(unknown)], resultOf(recording).uncertainty.columns));
   return columns;
@@ -162,16 +162,17 @@ void RepeatedEstimates::linearise(const CalibrationState& at) {
     known.value.segment(each.first, count) = each.quantity->difference(quantities_.prior_means, at_);
   }
   std::vector<PartialEstimate> estimates;
-  told_.clear();
+  estimated_.clear();
   for (std::size_t k = 0; k < recorded_.size(); ++k) {
     Eigen::VectorXd values(size);
     for (const Unknowns& each : unknowns_)
       values.segment(each.first, each.quantity->size()) = each.quantity->difference(resultOf(k).state, at_);
-    Indices& told = told_.emplace_back();
+    Indices& estimated = estimated_.emplace_back();
     for (Eigen::Index u = 0; u < size; ++u)
-      if (columnOf(columns_[static_cast<std::size_t>(u)], resultOf(k).uncertainty.columns)) told.push_back(u);
+      if (columnOf(columns_[static_cast<std::size_t>(u)], resultOf(k).uncertainty.columns))
+        estimated.push_back(u);
     const Indices columns = columnsOf(k);
-    estimates.push_back({told, values(told), inverseOf(asWeighed(k)(columns, columns)),
+    estimates.push_back({estimated, values(estimated), inverseOf(asWeighed(k)(columns, columns)),
                          resultOf(k).uncertainty.covariance()(columns, columns)});
   }
   combination_.emplace(estimates, std::move(known));
@@ -193,19 +194,19 @@ CalibrationResult RepeatedEstimates::joint(std::span<const std::size_t> chosen) 
   const std::size_t last = chosen.back();
   const CalibrationResult& own = resultOf(last);
   const CombinedEstimate combined = combination_->combine(chosen);
-  Eigen::VectorXd moved_by(static_cast<Eigen::Index>(told_[last].size()));
+  Eigen::VectorXd moved_by(static_cast<Eigen::Index>(estimated_[last].size()));
   for (const Unknowns& each : unknowns_) {
     const Eigen::VectorXd was = each.quantity->difference(own.state, at_);
     for (Eigen::Index k = 0; k < was.size(); ++k) {
-      const auto told = std::ranges::find(told_[last], each.first + k);
-      if (told != told_[last].end())
-        moved_by[told - told_[last].begin()] = combined.value[each.first + k] - was[k];
+      const auto estimated = std::ranges::find(estimated_[last], each.first + k);
+      if (estimated != estimated_[last].end())
+        moved_by[estimated - estimated_[last].begin()] = combined.value[each.first + k] - was[k];
     }
   }
   const FollowingEstimate estimate = followingEstimate(
       own.uncertainty,
-      {columnsOf(last), told_[last], asWeighed(last), combination_->gain(last, chosen), moved_by}, combined,
-      columns_);
+      {columnsOf(last), estimated_[last], asWeighed(last), combination_->gain(last, chosen), moved_by},
+      combined, columns_);
   CalibrationResult joint;
   joint.start_ns = own.start_ns;
   joint.state = own.state;
@@ -241,8 +242,8 @@ double RepeatedEstimates::varyingSigma(std::size_t recording, const RigQuantity&
                                        std::size_t part) const {
   const auto unknown = columnOf(quantity.address(part), columns_);
   if (unknown) {
-    const auto told = std::ranges::find(told_[recording], *unknown);
-    return varying_[recording][told - told_[recording].begin()];
+    const auto estimated = std::ranges::find(estimated_[recording], *unknown);
+    return varying_[recording][estimated - estimated_[recording].begin()];
   }
   // The sigmas of time offsets include the effect of light on pixel delays, which is the same in all
   // recordings.
@@ -301,7 +302,7 @@ std::vector<RepeatedQuantity> RepeatedEstimates::quantities(std::span<const std:
                          quantity.info->title,
                          quantity.share == QuantityShare::Common,
                          {}};
-    bool told = false;
+    bool estimated = false;
     const double factor = quantity.info->shown_factor;
     for (std::size_t part = 0; part < quantity.parts.size(); ++part) {
       RepeatedNumber& number = row.numbers.emplace_back();
@@ -310,13 +311,13 @@ std::vector<RepeatedQuantity> RepeatedEstimates::quantities(std::span<const std:
       for (const RecordedEstimate& each : recorded_) {
         const CalibrationResult* const result = each.result.get();
         const auto column = columnOf(quantity.address(part), result->uncertainty.columns);
-        told = told || column;
+        estimated = estimated || column;
         number.values.push_back(
             column ? factor * quantity.numbers(result->state)[static_cast<Eigen::Index>(part)] : kNone);
         number.sigmas.push_back(column ? factor * result->uncertainty.standard_deviations[*column] : kNone);
       }
     }
-    if (!told) continue;
+    if (!estimated) continue;
     fillStatistics(chosen, together, quantity, row);
     shown.push_back(std::move(row));
   }

@@ -59,8 +59,8 @@ class RepeatedEstimates {
   std::vector<QuantityAddress> columns_;  // of the unknowns
   CalibrationState at_;                   // linearisation point
   std::optional<EstimateCombination> combination_;
-  std::vector<std::vector<Eigen::Index>> told_;  // unknowns by recording
-  std::vector<Eigen::VectorXd> varying_;         // in the same order: expected variation from sigmas
+  std::vector<std::vector<Eigen::Index>> estimated_;  // unknowns by recording
+  std::vector<Eigen::VectorXd> varying_;              // in the same order: expected variation from sigmas
 };
 
 }  // namespace evical

@@ -76,7 +76,7 @@ class WindowWorkers {
   // Time that the busiest thread worked.
   double busy_s() const { return std::ranges::max_element(workers_, {}, &Worker::busy_s)->busy_s; }
   // Resolutions of frames, if not known otherwise; called before finishing.
-  void tellResolutions(std::vector<Resolution>& resolutions_px) const {
+  void fillResolutions(std::vector<Resolution>& resolutions_px) const {
     for (std::size_t k = 0; k < views_.size(); ++k)
       if (views_[k] && !resolutions_px[k].known()) resolutions_px[k] = views_[k]->resolution_px();
   }
@@ -318,7 +318,7 @@ DetectionResult readAndDetect(const Session& session, std::vector<CameraLens> le
   windows.close();
   windows.join();
   context.throwIfStopped();
-  windows.tellResolutions(result.resolutions_px);
+  windows.fillResolutions(result.resolutions_px);
   result.cameras = windows.finish(result.faults);
   context.throwIfStopped();
   result.detect_s = windows.busy_s();

@@ -266,7 +266,7 @@ void SessionRecording::addFaults(std::size_t sensor, std::vector<RecordingFault>
   const auto at = [&](std::int64_t own_ns) {
     return secondsSince(start_ns_, gate.sessionTime_ns(own_ns).value_or(own_ns));
   };
-  const auto sayStrays = [&](const auto& filter, const char* item) {
+  const auto noteStrays = [&](const auto& filter, const char* item) {
     if (filter.strays() == 0) return;
     const double away_s = secondsSince(filter.strayFrom_ns(), filter.strayTime_ns());
     faults.push_back(
@@ -276,10 +276,10 @@ void SessionRecording::addFaults(std::size_t sensor, std::vector<RecordingFault>
                      stream, counted(filter.strays(), item), std::abs(away_s),
                      away_s < 0.0 ? "behind" : "ahead", at(filter.strayFrom_ns()))});
   };
-  sayStrays(gate.events, "event");
-  sayStrays(gate.samples, "IMU sample");
-  sayStrays(gate.frames, "frame");
-  sayStrays(gate.points, "point");
+  noteStrays(gate.events, "event");
+  noteStrays(gate.samples, "IMU sample");
+  noteStrays(gate.frames, "frame");
+  noteStrays(gate.points, "point");
   if (gate.immeasurable == 0) return;
   const double at_s = at(gate.immeasurable_ns);
   faults.push_back(

@@ -46,7 +46,7 @@ const WindowReport* windowWithBoardAt(double time_s, const BoardObservations& ca
 }
 
 // Times of another recording, say, or with a typing error, exclude nothing.
-void tellUnmatched(const SessionCamera& camera, const BoardObservations& observations,
+void noteUnmatched(const SessionCamera& camera, const BoardObservations& observations,
                    std::vector<RecordingFault>& faults) {
   std::vector<double> unmatched_s;
   for (const double time_s : camera.rejected_windows_s)
@@ -105,7 +105,7 @@ void rejectAsIn(const Session& session, DetectionResult& detections) {
   for (std::size_t k = 0; k < std::min(session.cameras.size(), detections.cameras.size()); ++k) {
     std::vector<double> times_s = session.cameras[k].rejected_windows_s;
     if (times_s.empty()) continue;
-    tellUnmatched(session.cameras[k], detections.cameras[k], detections.faults);
+    noteUnmatched(session.cameras[k], detections.cameras[k], detections.faults);
     detections.rejected_views.resize(detections.cameras.size());
     const std::vector<double> before_s = rejectedTimes_s(detections.cameras[k]);
     times_s.insert(times_s.end(), before_s.begin(), before_s.end());

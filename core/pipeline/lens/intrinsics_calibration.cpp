@@ -108,7 +108,7 @@ DetectionResult passOver(const Session& alone, const RunContext& context) {
   return std::move(*all);
 }
 
-void tellPass(const IntrinsicsRun& run, const RunContext& context) {
+void reportPass(const IntrinsicsRun& run, const RunContext& context) {
   if (context.observer != nullptr) context.observer->intrinsicsPassDone(run.result.passes, run.result);
 }
 
@@ -122,7 +122,7 @@ IntrinsicsRun fromSensorPixels(const Session& alone, const RunContext& context) 
   checkBoardSeen(run.detections.cameras.front(), alone.board, run.detections.faults);
   run.result = estimate(alone, run.detections, {}, context, run.story);
   run.result.passes = 1;
-  tellPass(run, context);
+  reportPass(run, context);
   return run;
 }
 
@@ -149,7 +149,7 @@ IntrinsicsRun fromEvents(const Session& alone, const RunContext& context) {
                            : std::nullopt;
     lens.detection_intrinsics = start = found;
     if (moved) run.result.moved_px = moved->rms_px;
-    tellPass(run, context);
+    reportPass(run, context);
     if (!moved) continue;
     context.progress.log(LogLevel::Debug, fmt::format("pass {}: {} views, changed by {:.4f} px", number,
                                                       run.result.views_found, moved->rms_px));

@@ -368,11 +368,11 @@ PairTrack Maintainer::trackOf(std::size_t k, double false_alarms) const {
 // True if the pair is close enough to its linearisation point.
 bool Maintainer::isNearNominal(const PairTrack& track) const {
   constexpr double kRotation_rad = 0.02, kOffset_s = 0.004;
-  const auto told = [&](Eigen::Index first, Eigen::Index count) {
+  const auto known = [&](Eigen::Index first, Eigen::Index count) {
     return track.start_covariance.diagonal().segment(first, count).maxCoeff() < 1e-4;
   };
-  return !(told(0, 3) && track.start.head<3>().norm() > kRotation_rad) &&
-         !(told(6, 1) && std::abs(track.start[6]) > kOffset_s);
+  return !(known(0, 3) && track.start.head<3>().norm() > kRotation_rad) &&
+         !(known(6, 1) && std::abs(track.start[6]) > kOffset_s);
 }
 
 void Maintainer::addPairs(double false_alarms) {

@@ -291,7 +291,7 @@ bool isAsked(const Finding& finding, bool several) {
          (id == QuantityId::GyroscopeBias && finding.source == FindingSource::Stops);
 }
 
-void sayChanged(Maintenance& maintenance) {
+void setChanged(Maintenance& maintenance) {
   maintenance.verdict = Verdict::Changed;
   std::string since, on_the_way;
   for (const Finding& finding : maintenance.findings)
@@ -390,7 +390,7 @@ void judge(Maintenance& maintenance) {
   const std::vector<Finding>& findings = maintenance.findings;
   const auto isChanged = [](const Finding& finding) { return finding.changed; };
   if (!maintenance.steps.empty() || std::any_of(findings.begin(), findings.end(), isChanged)) {
-    sayChanged(maintenance);
+    setChanged(maintenance);
     return;
   }
   const bool several = maintenance.imus.size() > 1;

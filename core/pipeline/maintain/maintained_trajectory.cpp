@@ -131,7 +131,7 @@ class TrajectoryCheck {
     const ClockAgreement clocks = crossCorrelateClocks(of_imu, of_body, *input_.options);
     constexpr double kNear_s = 0.004;
     if (!clocks.moved) return 0.0;
-    if (clocks.correlation < input_.options->same_motion) sayOther(poses, turned);
+    if (clocks.correlation < input_.options->same_motion) throwOther(poses, turned);
     const double later_s = std::abs(clocks.later_s) > kNear_s ? clocks.later_s : 0.0;
     for (TimedPose& pose : poses) pose.time_s += later_s;
     checkTurns(poses, turned);
@@ -169,7 +169,7 @@ class TrajectoryCheck {
   void checkTurns(const std::vector<TimedPose>& poses, const TurnedRates& turned) const {
     constexpr double kExplained = 0.9, kTurned_rad = kRadPerDeg;
     const TurnAgreement agreement = agreementOf(ratesOf(poses, unchanged), turned);
-    if (agreement.correlation < kExplained) sayOther(poses, turned);
+    if (agreement.correlation < kExplained) throwOther(poses, turned);
     const double angle = agreement.imu_from_body.angularDistance(Eigen::Quaterniond::Identity());
     if (angle < kTurned_rad) return;
     const std::string body = bodyOf(input_.before, imu_, agreement.imu_from_body);
@@ -179,7 +179,7 @@ class TrajectoryCheck {
                    "Give the poses world_from_imu of this IMU");
   }
 
-  [[noreturn]] void sayOther(const std::vector<TimedPose>& poses, const TurnedRates& turned) const {
+  [[noreturn]] void throwOther(const std::vector<TimedPose>& poses, const TurnedRates& turned) const {
     constexpr double kExplained = 0.9;
     const double of_inverse = agreementOf(ratesOf(poses, inverted), turned).correlation,
                  of_order = agreementOf(ratesOf(poses, realPartFirst), turned).correlation;

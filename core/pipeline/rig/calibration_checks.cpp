@@ -166,7 +166,7 @@ void logDetections(const DetectionResult& detections, const RunContext& context)
 }
 
 // A log that ends early, say: the reason why many views are not used.
-void tellUncovered(const DetectionResult& detections, double min_coverage,
+void noteUncovered(const DetectionResult& detections, double min_coverage,
                    std::vector<RecordingFault>& faults) {
   for (const BoardObservations& camera : detections.cameras) {
     for (const ImuData& imu : detections.imus) {
@@ -252,7 +252,7 @@ void checkPass(const Session& session, const RunContext& context, DetectionResul
     const std::optional<RecordingFault> unseen = unseenCircles(detections.cameras[k], session.boardOf(k));
     if (unseen) addUnlessListed(*unseen, detections.faults);
   }
-  tellUncovered(detections, session.options.initialisation->min_imu_coverage, detections.faults);
+  noteUncovered(detections, session.options.initialisation->min_imu_coverage, detections.faults);
   for (const RecordingFault& fault : detections.faults) context.progress.log(LogLevel::Warning, fault.text);
   logDetections(detections, context);
   checkDuration(session, detections);

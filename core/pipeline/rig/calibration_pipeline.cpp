@@ -127,7 +127,7 @@ class Calibration {
     CalibrationOutcome outcome;
     try {
       work();
-      returnPass();
+      returnDetections();
       outcome.run = std::move(run_);
       return outcome;
     } catch (const Cancelled&) {
@@ -136,8 +136,8 @@ class Calibration {
       outcome.status = RunStatus::Failed;
       outcome.error = error;
     }
-    if (outcome.error) tellCause(outcome);
-    returnPass();
+    if (outcome.error) explainError(outcome);
+    returnDetections();
     outcome.detections = std::move(run_.detections);
     return outcome;
   }
@@ -156,7 +156,7 @@ class Calibration {
   }
 
   // Replaces the error by the wrong input that caused it.
-  void tellCause(CalibrationOutcome& outcome) {
+  void explainError(CalibrationOutcome& outcome) {
     try {
       const DetectionResult& detections = run_.detections;
       if (input_.cameras.empty() && detections.cameras.size() == session_.cameras.size() &&
@@ -203,7 +203,7 @@ class Calibration {
   }
 
   // Returns the input's data to the pass, with the views that were removed.
-  void returnPass() {
+  void returnDetections() {
     restorePass(std::exchange(input_, {}), run_.detections);
     for (std::size_t k = 0; k < whole_views_.size(); ++k)
       if (std::optional<std::vector<BoardView>> whole = std::exchange(whole_views_[k], std::nullopt))
@@ -490,14 +490,14 @@ class Calibration {
     }
     rankReasons(result);
     // Notes that a reason states, or a warning.
-    const auto isTold = [&](const std::string& note) {
+    const auto isDistinguished = [&](const std::string& note) {
       return result.reason.find(note) != std::string::npos || note == initial_.doubt ||
              (!wrong_noise_.empty() && note.find("residual is ") != std::string::npos);
     };
-    std::erase_if(result.notes, isTold);
+    std::erase_if(result.notes, isDistinguished);
   }
 
-  void tellRejected() {
+  void noteRejected() {
     for (std::size_t k = 0; k < run_.detections.cameras.size(); ++k) {
       for (const double time_s : rejectedTimes_s(run_.detections.cameras[k]))
         run_.result.rejected_windows.push_back({k, time_s});
@@ -510,14 +510,14 @@ class Calibration {
     CalibrationResult& result = run_.result;
     if (const std::optional<QualityWarning> unit = wrongUnit(session_, input_, result, context_))
       flagDoubtful(*unit, result);
-    returnPass();
+    returnDetections();
     result.start_ns = run_.detections.start_ns;
     result.freed = freed_;
     noteCornersOfTags();
     for (const QualityWarning& freed : freed_)
       result.notes.push_back(
           fmt::format("{}: therefore, the option {} was set", freed.text, freed.repair->text()));
-    tellRejected();
+    noteRejected();
     for (const SessionCamera& camera : session_.cameras)
       if (std::string note = reversalNote(camera); !note.empty()) result.notes.push_back(std::move(note));
     for (const RecordingFault& fault : run_.detections.faults) result.notes.push_back(fault.text);

@@ -274,11 +274,12 @@ std::string boardsYaml(const Session& session) {
   if (!hasNamedBoards(session)) return "board:\n" + indented(first, 2);
   std::string text = fmt::format("boards:\n  {}:\n", yamlText(session.board_name)) + indented(first, 4);
   for (const SessionBoard& further : session.further_boards) {
-    const bool told =
+    const bool by_length =
         tellsSpacing(further.measured, further.board) && further.spacing_std == spacingStd(further.measured);
     std::vector<std::string> lines =
-        boardLines(further.board, told ? further.measured : std::optional<MeasuredLength>());
-    if (further.spacing_std && !told) lines.push_back(fmt::format("spacing_std: {}", *further.spacing_std));
+        boardLines(further.board, by_length ? further.measured : std::optional<MeasuredLength>());
+    if (further.spacing_std && !by_length)
+      lines.push_back(fmt::format("spacing_std: {}", *further.spacing_std));
     text += fmt::format("  {}:\n", yamlText(further.name)) + indented(lines, 4);
   }
   return text;

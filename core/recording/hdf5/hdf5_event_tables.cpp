@@ -151,7 +151,7 @@ class Columns : public EventTable {
     }
     events.resize(used);
     if (bad > 0) problem_ = fmt::format("{} rows from {} on have no time", bad, row);
-    if (unpolarised > 0) sayUnpolarised(unpolarised, row);
+    if (unpolarised > 0) noteUnpolarised(unpolarised, row);
     return row + count;
   }
 
@@ -199,7 +199,7 @@ class EventRows : public EventTable {
       }
       const std::optional<bool> brighter = brighterOf(values[4 * i + columns_.polarity]);
       if (!brighter) {
-        sayUnpolarised(1, row + i);
+        noteUnpolarised(1, row + i);
         continue;
       }
       event.x_px = pixel(values[4 * i + columns_.x]);
@@ -257,7 +257,7 @@ class Compound : public EventTable {
       const std::optional<bool> brighter = brighterOf(values[i].p);
       Event event{0, values[i].x, values[i].y, brighter.value_or(false)};
       if (!brighter) {
-        sayUnpolarised(1, row + i);
+        noteUnpolarised(1, row + i);
       } else if (time_.convert(values[i].t, event.time_ns)) {
         events.push_back(event);
       } else {
@@ -273,7 +273,7 @@ class Compound : public EventTable {
 
 }  // namespace
 
-void EventTable::sayUnpolarised(std::size_t count, std::uint64_t row) {
+void EventTable::noteUnpolarised(std::size_t count, std::uint64_t row) {
   problem_ = fmt::format("{} rows from {} on have a polarity other than 1, 0 and -1", count, row);
 }
 

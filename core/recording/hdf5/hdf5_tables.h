@@ -47,7 +47,7 @@ class EventTable {
   const std::string& note() const { return note_; }  // on the interpretation; empty if it is clear
 
  protected:
-  void sayUnpolarised(std::size_t count, std::uint64_t row);
+  void noteUnpolarised(std::size_t count, std::uint64_t row);
 
   TimeScale time_;
   std::string problem_, note_;

@@ -286,7 +286,7 @@ class ArrayLayoutFinder {
     }
     const auto count =
         std::count_if(numbers.begin(), numbers.end(), [](const auto& part) { return part.has_value(); });
-    if (count == 3) sayWhatIsMissing(name, numbers);
+    if (count == 3) noteMissing(name, numbers);
     if (count < 4) return;
     used_.insert(sources.begin(), sources.end());
     EventLayout layout = layoutOf({*numbers[0], *numbers[1], *numbers[2], *numbers[3]}, unit_ns);
@@ -326,7 +326,7 @@ class ArrayLayoutFinder {
     if (isSide(width) && isSide(height)) layout.size_px = {static_cast<int>(width), static_cast<int>(height)};
   }
 
-  void sayWhatIsMissing(const std::string& name, const std::array<std::optional<Numbers>, 4>& numbers) {
+  void noteMissing(const std::string& name, const std::array<std::optional<Numbers>, 4>& numbers) {
     constexpr const char* kNames[] = {"x", "y", "t", "p"};
     std::string there, missing;
     for (std::size_t i = 0; i < 4; ++i) {

@@ -170,7 +170,7 @@ void NumpyReader::addArrays(const std::vector<numpy::Array>& arrays) {
   if (found.events.empty()) failWithNames(arrays, found.problems);
   for (const numpy::EventLayout& layout : found.events) addStream(layout);
   for (const std::string& problem : found.problems) addFault("", FaultKind::Unreadable, problem);
-  sayWhatIsLeftOut(found.others);
+  noteLeftOut(found.others);
 }
 
 void NumpyReader::addStream(const numpy::EventLayout& layout) {
@@ -193,7 +193,7 @@ void NumpyReader::addStream(const numpy::EventLayout& layout) {
   }
 }
 
-void NumpyReader::sayWhatIsLeftOut(const std::vector<const numpy::Array*>& others) {
+void NumpyReader::noteLeftOut(const std::vector<const numpy::Array*>& others) {
   std::vector<std::string> objects, imus;
   for (const numpy::Array* array : others) {
     if (array->header.objects) {

@@ -85,7 +85,7 @@ class NumpyReader : public RecordingReader {
 
   void addArrays(const std::vector<numpy::Array>& arrays);
   void addStream(const numpy::EventLayout& layout);
-  void sayWhatIsLeftOut(const std::vector<const numpy::Array*>& others);
+  void noteLeftOut(const std::vector<const numpy::Array*>& others);
   [[noreturn]] void failWithNames(const std::vector<numpy::Array>& arrays,
                                   const std::vector<std::string>& problems) const;
   bool fill(Source& source, std::vector<Event>& events);

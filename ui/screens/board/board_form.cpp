@@ -205,10 +205,10 @@ void BoardForm::addMeasure() {
   form_->addRow(tr("Length [mm]"), length_mm_);
   form_->addRow(tr("Number of spacings"), spacings_);
   form_->addRow(tr("Sigma [mm]"), length_std_mm_);
-  connect(is_measured_, &QCheckBox::clicked, this, [this] { sayMeasured("measured"); });
-  connect(length_mm_, &NumberField::valueEdited, this, [this] { sayMeasured("measured.length_m"); });
-  connect(spacings_, &QSpinBox::valueChanged, this, [this] { sayMeasured("measured.spacings"); });
-  connect(length_std_mm_, &NumberField::valueEdited, this, [this] { sayMeasured("measured.std_m"); });
+  connect(is_measured_, &QCheckBox::clicked, this, [this] { showMeasured("measured"); });
+  connect(length_mm_, &NumberField::valueEdited, this, [this] { showMeasured("measured.length_m"); });
+  connect(spacings_, &QSpinBox::valueChanged, this, [this] { showMeasured("measured.spacings"); });
+  connect(length_std_mm_, &NumberField::valueEdited, this, [this] { showMeasured("measured.std_m"); });
 }
 
 void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>& measured) {
@@ -287,7 +287,7 @@ void BoardForm::say(const QString& field) {
   emit edited(board, field);
 }
 
-void BoardForm::sayMeasured(const QString& field) {
+void BoardForm::showMeasured(const QString& field) {
   std::optional<MeasuredLength> changed;
   if (is_measured_->isChecked()) {
     changed = measured_.value_or(overWholeBoard(board_));

@@ -51,7 +51,7 @@ class BoardForm : public QWidget {
   void showType();
   void showRows();
   void say(const QString& field);
-  void sayMeasured(const QString& field);
+  void showMeasured(const QString& field);
 
   Board board_;
   bool numbers_only_ = false, blinking_offered_ = false;
