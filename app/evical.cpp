@@ -5,8 +5,8 @@
 #include "app/inspect_command.h"
 #include "app/output.h"
 #include "app/version.h"
+#include "core/base/child_process.h"
 #include "core/base/error.h"
-#include "core/base/process_memory.h"
 #include "core/recording/recording_server.h"
 
 #include <csignal>

@@ -2,7 +2,7 @@
 // The desktop program: builds the window and opens the given file.
 #include "app/manual_page.h"
 #include "app/version.h"
-#include "core/base/process_memory.h"
+#include "core/base/child_process.h"
 #include "core/recording/recording_server.h"
 #include "ui/theme/theme.h"
 #include "ui/window/main_window.h"

@@ -2,8 +2,8 @@
 #include "app/command_line.h"
 #include "app/output.h"
 
-#include "core/base/distinct_names.h"
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
 #include "core/base/plain_text.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/runs/run_data.h"

@@ -3,7 +3,7 @@
 #   packaging/check-tidy.sh                    all sources
 #   packaging/check-tidy.sh SOURCE...          these sources
 #   packaging/check-tidy.sh --changed [BASE]   sources that differ from commit BASE, or include a header that differs
-#   packaging/check-tidy.sh --recent           the same for 6 minutes, by default from the state one day before the last commit:
+#   packaging/check-tidy.sh --recent           the same for 4 minutes, by default from the state one day before the last commit:
 #                                              those that differ come first
 # BASE is $EVICAL_BASE, else the branch's merge base with its upstream. packaging/nightly.sh checks all sources.
 # EVICAL_TIDY_TIMES=1 prints the time of each unit.
@@ -34,7 +34,7 @@ case "${1:-}" in
   --changed) base=${2:-$(base_or start_of_branch)} ;;
   --recent)
     base=$(base_or a_day_before)
-    limit=(--limit 360)
+    limit=(--limit 240)
     ;;
 esac
 if [ -n "${base:-}" ]; then

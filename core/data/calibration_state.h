@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/data/camera_lens.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"
 

@@ -6,7 +6,6 @@
 #include "core/base/progress.h"
 #include "core/egomotion/alignment_fit.h"
 #include "core/egomotion/camera_record.h"
-#include "core/egomotion/integrated_rates.h"
 #include "core/egomotion/lens_rays.h"
 #include "core/egomotion/window_fit.h"
 

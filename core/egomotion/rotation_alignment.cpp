@@ -1,7 +1,6 @@
 #include "core/egomotion/rotation_alignment.h"
 
 #include "core/egomotion/alignment_fit.h"
-#include "core/egomotion/integrated_rates.h"
 #include "core/egomotion/joint_fit.h"
 #include "core/geometry/so3.h"
 #include "core/numerics/dense.h"

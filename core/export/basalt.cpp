@@ -2,7 +2,7 @@
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
-#include "core/export/imu_frames.h"
+#include "core/export/rig.h"
 #include "core/geometry/camera_intrinsics.h"
 
 #include <fmt/format.h>

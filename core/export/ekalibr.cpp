@@ -1,7 +1,7 @@
 #include "core/export/distortion_fit.h"
 #include "core/export/export_text.h"
 #include "core/export/exporters.h"
-#include "core/export/imu_frames.h"
+#include "core/export/rig.h"
 
 #include <fmt/format.h>
 

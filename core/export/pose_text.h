@@ -2,7 +2,7 @@
 // shortest that read back exactly; quaternions are unit quaternions, in the order that each form states.
 #pragma once
 
-#include "core/report/sensor_pose.h"
+#include "core/report/shown_quantity.h"
 
 #include <span>
 #include <string>

@@ -4,7 +4,6 @@
 #include "core/base/file_places.h"
 #include "core/base/number.h"
 #include "core/base/plain_text.h"
-#include "core/export/imu_frames.h"
 #include "core/export/rig.h"
 #include "core/foreign/read_numbers.h"
 #include "core/geometry/camera_intrinsics.h"

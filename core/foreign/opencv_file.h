@@ -7,7 +7,7 @@
 
 #include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/resolution.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 
 #include <Eigen/Core>
 

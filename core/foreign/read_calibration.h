@@ -5,7 +5,7 @@
 
 #include "core/data/calibration_setup.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 
 #include <Eigen/Core>
 

@@ -3,7 +3,7 @@
 
 #include "core/base/yaml_node.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 
 #include <Eigen/Core>
 

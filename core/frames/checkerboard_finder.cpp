@@ -1,7 +1,7 @@
 #include "core/base/error.h"
 #include "core/frames/board_finder.h"
-#include "core/frames/brightness.h"
 #include "core/frames/corner_measurement.h"
+#include "core/frames/gray_image.h"
 #include "core/frames/picture_view.h"
 
 #include <fmt/format.h>

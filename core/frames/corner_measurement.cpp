@@ -1,6 +1,6 @@
 #include "core/frames/corner_measurement.h"
 
-#include "core/frames/brightness.h"
+#include "core/frames/gray_image.h"
 
 #include "core/geometry/homography.h"
 #include "core/geometry/marker_bits.h"

@@ -1,8 +1,8 @@
 #include "core/frames/flash_finder.h"
 
 #include "core/frames/board_finder.h"
-#include "core/frames/brightness.h"
 #include "core/frames/corner_measurement.h"
+#include "core/frames/gray_image.h"
 
 #include <Eigen/LU>
 

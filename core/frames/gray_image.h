@@ -3,6 +3,8 @@
 
 #include "core/data/frame.h"
 
+#include <Eigen/Core>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -31,5 +33,18 @@ std::string encodedPng(const Frame& frame);
 
 // Lossy; quality 1 to 100.
 std::string encodedJpeg(const Frame& frame, int quality);
+
+// Brightness of a picture for the finders.
+
+// True if a square of this half width around the place is inside the picture.
+bool isInside(const GrayImage& image, const Eigen::Vector2d& at_px, double half_width_px);
+
+// Interpolated between pixels, at a place inside the picture.
+double brightnessAt(const GrayImage& image, const Eigen::Vector2d& at_px);
+
+// Standard deviation of a pixel's noise, at least that of rounding to integers: the median of a second
+// difference, which edges hardly affect (J. Immerkaer, "Fast noise variance estimation", CVIU 1996), over
+// pixels that are neither black nor white.
+double noiseSigma(const GrayImage& image);
 
 }  // namespace evical

@@ -6,7 +6,7 @@
 //   Q*_13 = p_x p_z + r^2 n_x n_z,  Q*_23 = p_y p_z + r^2 n_y n_z,  Q*_33 = p_z^2 - r^2 (1 - n_z^2).
 #pragma once
 
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 
 #include "core/geometry/camera_intrinsics.h"
 

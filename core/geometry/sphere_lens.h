@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/pinhole_distortion.h"
+#include "core/geometry/camera_model.h"
 
 #include <Eigen/Core>
 

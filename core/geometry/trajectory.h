@@ -1,7 +1,7 @@
 // Motion of the reference IMU in the world (= board) frame, and of cameras attached to it.
 #pragma once
 
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 #include "core/geometry/so3_spline.h"
 #include "core/geometry/vector_spline.h"
 

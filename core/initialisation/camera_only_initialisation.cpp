@@ -4,7 +4,7 @@
 #include "core/base/time.h"
 #include "core/geometry/so3.h"
 #include "core/initialisation/camera_alignment.h"
-#include "core/initialisation/camera_trajectory.h"
+#include "core/initialisation/camera_poses.h"
 #include "core/initialisation/further_boards.h"
 #include "core/initialisation/initialisation_checks.h"
 #include "core/initialisation/mirror_check.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/data/calibration_setup.h"
-#include "core/initialisation/camera_trajectory.h"
+#include "core/initialisation/camera_poses.h"
 #include "core/initialisation/initialise.h"
 #include "core/initialisation/world_rotation.h"
 

@@ -4,7 +4,7 @@
 #include "core/base/progress.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 #include "core/intrinsics/sensor_views.h"
 
 #include <array>

@@ -10,7 +10,7 @@
 
 #include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/camera_model.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 #include "core/intrinsics/sensor_views.h"
 
 #include <ceres/manifold.h>

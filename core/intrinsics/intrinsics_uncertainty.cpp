@@ -2,7 +2,7 @@
 
 #include "core/geometry/projection_difference.h"
 #include "core/intrinsics/circle_centre_cost.h"
-#include "core/numerics/newey_west.h"
+#include "core/numerics/robust.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -7,7 +7,7 @@
 #include "core/data/board_observations.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 
 #include <Eigen/Core>
 

@@ -1,10 +1,13 @@
 // Robust typical values and weights.
 #pragma once
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -38,6 +41,51 @@ inline constexpr double kMedianOfChi2With2 = 1.3862943611198906;  // 2 ln 2
 // if there are none.
 inline double scaleOfPoints(std::vector<double> squared_errors) {
   return squared_errors.empty() ? 1.0 : std::sqrt(medianOf(std::move(squared_errors)) / kMedianOfChi2With2);
+}
+
+// Covariance of a sum of scores that are correlated with their neighbours in time (W. Newey, K. West,
+// Econometrica 1987): products of neighbours have weights that fall to zero at a bound.
+
+template <int kSize>
+using ScoreVector = Eigen::Matrix<double, kSize, 1>;
+template <int kSize>
+using ScoreMatrix = Eigen::Matrix<double, kSize, kSize>;
+
+// Scatter of scores at even steps in time: weights fall to zero at `lags` + 1 steps.
+template <int kSize>
+ScoreMatrix<kSize> neweyWestByLag(const std::vector<ScoreVector<kSize>>& scores, Eigen::Index size,
+                                  std::size_t lags) {
+  ScoreMatrix<kSize> sum = ScoreMatrix<kSize>::Zero(size, size);
+  for (std::size_t lag = 0; lag <= lags; ++lag) {
+    const double weight = 1.0 - static_cast<double>(lag) / (static_cast<double>(lags) + 1.0);
+    for (std::size_t i = 0; i + lag < scores.size(); ++i) {
+      const ScoreMatrix<kSize> product = scores[i] * scores[i + lag].transpose();
+      if (lag == 0) {
+        sum += product;
+      } else {
+        sum += weight * (product + product.transpose());
+      }
+    }
+  }
+  return sum;
+}
+
+// Scatter of scores at any times: weights fall to zero at `bound_s`; with a bound of zero only products of
+// simultaneous scores remain.
+template <int kSize>
+ScoreMatrix<kSize> neweyWestByTime(std::span<const double> times_s,
+                                   const std::vector<ScoreVector<kSize>>& scores, Eigen::Index size,
+                                   double bound_s) {
+  ScoreMatrix<kSize> sum = ScoreMatrix<kSize>::Zero(size, size);
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    for (std::size_t j = 0; j < scores.size(); ++j) {
+      const double apart_s = std::abs(times_s[i] - times_s[j]);
+      if (apart_s > bound_s) continue;
+      const double weight = bound_s > 0.0 ? 1.0 - apart_s / bound_s : 1.0;
+      sum += weight * scores[i] * scores[j].transpose();
+    }
+  }
+  return sum;
 }
 
 }  // namespace evical

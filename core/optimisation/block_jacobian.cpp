@@ -1,6 +1,6 @@
 #include "core/optimisation/block_jacobian.h"
 
-#include "core/numerics/vector_clones.h"
+#include "core/numerics/dense.h"
 
 #include <ceres/cost_function.h>
 #include <ceres/manifold.h>

@@ -116,10 +116,12 @@ std::vector<Quantity> ParameterBlocks::quantities() {
     if (block != nullptr) all.push_back({&info, sensor, block});
   };
   forEachSensorKind([&](auto kind) {
-    for (std::size_t i = 0; i < kind.of(moved_).size(); ++i)
+    for (std::size_t i = 0; i < kind.of(moved_).size(); ++i) {
+      const bool follows = kind.kOwner == QuantityOwner::Camera && !ownsSensor(i);
       forEachQuantity(kind.rows(), [&](const auto& row) {
-        if (!row.info.of_sensor || ownsSensor(i)) add(row.info, i, of(row.value(kind.of(moved_)[i])));
+        if (!follows || !row.info.of_sensor) add(row.info, i, of(row.value(kind.of(moved_)[i])));
       });
+    }
   });
   for (std::size_t i = 0; i <= moved_.further_boards.size(); ++i)
     forEachQuantity(kBoardQuantities,

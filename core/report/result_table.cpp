@@ -1,7 +1,6 @@
 #include "core/report/result_table.h"
 
 #include "core/report/intrinsics_report.h"
-#include "core/report/sensor_pose.h"
 #include "core/report/shown_quantity.h"
 
 #include "core/base/element.h"

@@ -3,7 +3,6 @@
 
 #include "core/data/imu_sample.h"
 #include "core/synthetic/drive_scenario.h"
-#include "core/synthetic/hand_motion.h"
 #include "core/synthetic/sinusoid_motion.h"
 
 #include <Eigen/Geometry>

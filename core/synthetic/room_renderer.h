@@ -2,7 +2,7 @@
 // sees the picture on the nearest side; at edges, sides are weighted by their share of the pixel.
 #pragma once
 
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 #include "core/synthetic/clutter_texture.h"
 #include "core/synthetic/room_scene.h"
 #include "core/synthetic/scene_renderer.h"

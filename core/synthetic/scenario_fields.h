@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/base/yaml_node.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 
 #include <fmt/format.h>
 #include <Eigen/Core>

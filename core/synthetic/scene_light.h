@@ -7,7 +7,7 @@
 
 #include "core/geometry/board.h"
 #include "core/geometry/marker_bits.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 
 #include <Eigen/Core>
 

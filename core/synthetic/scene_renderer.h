@@ -2,7 +2,7 @@
 // tiles: for some milliseconds most of them show only one object, or nothing that changes.
 #pragma once
 
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 #include "core/synthetic/board_surface.h"
 #include "core/synthetic/clutter_texture.h"
 #include "core/synthetic/scenario.h"

@@ -120,8 +120,8 @@ class Rows {
     addEncoded("NumPy, structured", "", [this](EventSpan events) {
       std::string bytes;
       for (const Event& event : events)
-        bytes += timeBytes(event) + test::numberBytes(event.x_px) + test::numberBytes(event.y_px) +
-                 polarity(event);
+        bytes +=
+            timeBytes(event) + test::rawNumber(event.x_px) + test::rawNumber(event.y_px) + polarity(event);
       return test::npyArray("[('t', '<i8'), ('x', '<u2'), ('y', '<u2'), ('p', '|b1')]", shape(), bytes);
     });
     addEncoded("NumPy archive", "", [this](EventSpan events) { return archiveOf(events, false); });
@@ -129,15 +129,15 @@ class Rows {
     list_.back().packed = false;  // limited by zlib
   }
 
-  static std::string timeBytes(const Event& event) { return test::numberBytes(event.time_ns / 1000); }
+  static std::string timeBytes(const Event& event) { return test::rawNumber(event.time_ns / 1000); }
   static char polarity(const Event& event) { return event.brighter ? '\1' : '\0'; }
   std::string shape() const { return fmt::format("({},)", events_.size()); }
 
   std::string archiveOf(EventSpan events, bool deflate) const {
     std::string x, y, t, p;
     for (const Event& event : events) {
-      x += test::numberBytes(event.x_px);
-      y += test::numberBytes(event.y_px);
+      x += test::rawNumber(event.x_px);
+      y += test::rawNumber(event.y_px);
       t += timeBytes(event);
       p += polarity(event);
     }

@@ -186,14 +186,14 @@ void saveCameraFormats(const fs::path& folder) {
 void saveArrays(const fs::path& folder) {
   std::string x, y, t, p, rows, reals;
   for (const Event& event : someEvents()) {
-    x += test::numberBytes(event.x_px);
-    y += test::numberBytes(event.y_px);
-    t += test::numberBytes(event.time_ns / 1000);
+    x += test::rawNumber(event.x_px);
+    y += test::rawNumber(event.y_px);
+    t += test::rawNumber(event.time_ns / 1000);
     p += static_cast<char>(event.brighter ? 1 : 0);
     rows += t.substr(t.size() - 8) + x.substr(x.size() - 2) + y.substr(y.size() - 2) + p.back();
     for (const double part :
          {1e-9 * static_cast<double>(event.time_ns), 1.0 * event.x_px, 1.0 * event.y_px, 1.0})
-      reals += test::numberBytes(part);
+      reals += test::rawNumber(part);
   }
   const std::string structured =
       test::npyArray("[('t', '<i8'), ('x', '<u2'), ('y', '<u2'), ('p', '|b1')]", "(60,)", rows);

@@ -6,7 +6,7 @@
 #include "core/frames/tag_layout.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 
 #include <functional>
 #include <optional>

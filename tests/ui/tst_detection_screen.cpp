@@ -5,7 +5,7 @@
 #include "tests/ui/other_load.h"
 #include "tests/ui/recorded_windows.h"
 #include "tests/ui/screenshots.h"
-#include "ui/detection/burst_band.h"
+#include "ui/detection/detection_engine.h"
 #include "ui/detection/event_window_reader.h"
 #include "ui/detection/layers.h"
 #include "ui/detection/window_analysis.h"

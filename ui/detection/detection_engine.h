@@ -4,7 +4,7 @@
 // kind is processed.
 #pragma once
 
-#include "core/pipeline/session/session.h"
+#include "ui/detection/event_cache.h"
 #include "ui/detection/event_window_reader.h"
 #include "ui/detection/events_over_frame.h"
 #include "ui/detection/frame_analysis.h"
@@ -12,6 +12,10 @@
 #include "ui/detection/surface_frame.h"
 #include "ui/detection/window_analysis.h"
 #include "ui/detection/window_pictures.h"
+
+#include "core/frontend/burst_window.h"
+#include "core/frontend/edge_crossings.h"
+#include "core/pipeline/session/session.h"
 #include "ui/jobs/latest_job.h"
 #include "ui/jobs/live_view.h"
 
@@ -19,6 +23,8 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
+#include <vector>
 
 namespace evical::ui {
 
@@ -146,6 +152,33 @@ class DetectionEngine : public QObject {
   LatestJob read_job_{OutdatedWork::Dropped};
   LatestJob render_job_{OutdatedWork::Delivered};
   LatestJob analysis_job_{OutdatedWork::Delivered};
+};
+
+// Edge bursts around the cursor, from cached events. Up to ten seconds are kept, so that stepping and playing
+// only add new ones. A jump costs one front-end history of events: 0.7 s.
+class BurstBand {
+ public:
+  BurstBand(std::shared_ptr<const EventCache> cache, Resolution resolution_px, const BurstOptions& options);
+
+  // Provides at least all bursts with begin_ns <= time < end_ns. False: the recording is not yet read that
+  // far, and history() has only the existing ones.
+  bool cover(std::int64_t begin_ns, std::int64_t end_ns);
+  const BurstHistory& history() const { return history_; }
+
+ private:
+  void restart(std::int64_t begin_ns);
+  void feedUntil(std::int64_t end_ns);
+
+  std::shared_ptr<const EventCache> cache_;
+  Resolution resolution_px_;
+  BurstOptions options_;
+  std::int64_t lead_ns_, lag_ns_;            // time before and after a burst in which events affect it
+  std::optional<BurstExtractor> extractor_;  // null once finished
+  BurstHistory history_;
+  std::int64_t covered_from_ns_ = 0, fed_until_ns_ = 0;
+  bool running_ = false;
+  std::vector<Event> events_;
+  std::vector<EdgeCrossing> bursts_;
 };
 
 }  // namespace evical::ui

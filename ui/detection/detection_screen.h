@@ -5,7 +5,7 @@
 
 #include "core/pipeline/detection/view_rejection.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
-#include "ui/detection/colour_legend.h"
+#include "ui/detection/event_view.h"
 #include "ui/detection/layers.h"
 #include "ui/detection/live_detection.h"
 #include "ui/detection/surface_frame.h"

@@ -3,7 +3,6 @@
 // the pixel under the mouse. Draws its input without any computation.
 #pragma once
 
-#include "ui/detection/colour_legend.h"
 #include "ui/detection/surface_frame.h"
 
 #include <QPointF>
@@ -15,7 +14,22 @@
 #include <memory>
 #include <optional>
 
+// Legend of the event view's colours, in a corner of the picture.
+
 class QPainter;
+
+namespace evical::ui {
+
+enum class ColourLegend {
+  None,       // frame without events
+  Polarity,   // events: brighter and darker
+  Direction,  // normal flow: a wheel of the directions
+};
+
+// In the lower right corner of `room`; nothing if it would fill the picture.
+void paintLegend(QPainter& painter, const QRect& room, ColourLegend legend);
+
+}  // namespace evical::ui
 
 namespace evical::ui {
 

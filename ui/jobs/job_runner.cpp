@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "ui/jobs/job_runner.h"
 
+#include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/base/in_parallel.h"
 #include "core/base/plain_text.h"
-#include "core/base/process_memory.h"
 #include "core/base/time.h"
 #include "core/recording/separate_reader.h"
 

@@ -6,7 +6,7 @@
 #include "ui/plots/plot_panel.h"
 
 #include "core/numerics/spectrum.h"
-#include "core/report/signal_prediction.h"
+#include "core/report/residual_statistics.h"
 
 #include <QWidget>
 

@@ -3,7 +3,7 @@
 
 #include "core/initialisation/initialisation_options.h"
 #include "core/initialisation/rotation_rates.h"
-#include "core/report/signal_prediction.h"
+#include "core/report/residual_statistics.h"
 #include "ui/jobs/latest_job.h"
 #include "ui/plots/chart_saving.h"
 #include "ui/plots/empty_note.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/geometry/board.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 
 namespace evical::ui {
 

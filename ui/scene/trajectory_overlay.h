@@ -5,7 +5,12 @@
 #include "ui/scene/trajectory_scene.h"
 #include "ui/scene/turntable_camera.h"
 
+#include <Eigen/Core>
 #include <QSizeF>
+#include <QWidget>
+
+#include <array>
+#include <optional>
 
 class QPainter;
 
@@ -24,5 +29,30 @@ struct TrajectoryOverlay {
 };
 
 void paintOverlay(QPainter& painter, const TrajectoryOverlay& overlay);
+
+}  // namespace evical::ui
+
+// Numbers at the cursor's time, in a row.
+
+class QLabel;
+
+namespace evical::ui {
+
+struct PoseNumbers {
+  bool of_camera = false;  // otherwise of the IMU
+  std::optional<Eigen::Vector3d> position_m;
+  std::optional<double> speed_m_s, rotation_rate_rad_s, residual_px;
+};
+
+class PoseReadout : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit PoseReadout(QWidget* parent = nullptr);
+  void setNumbers(const PoseNumbers& numbers);
+
+ private:
+  std::array<QLabel*, 4> captions_{}, values_{};
+};
 
 }  // namespace evical::ui

@@ -5,7 +5,6 @@
 #include "ui/forms/page_keys.h"
 #include "ui/jobs/file_saver.h"
 #include "ui/jobs/latest_job.h"
-#include "ui/scene/pose_readout.h"
 #include "ui/scene/scene_shapes.h"
 #include "ui/scene/time_bar.h"
 #include "ui/scene/trajectory_overlay.h"

@@ -2,7 +2,7 @@
 
 #include "core/numerics/angles.h"
 #include "core/numerics/dense.h"
-#include "core/optimisation/uncertainty/score_scatter.h"
+#include "core/optimisation/uncertainty/score_test.h"
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>

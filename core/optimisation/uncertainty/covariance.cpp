@@ -6,11 +6,11 @@
 #include "core/optimisation/calibration_problem.h"
 #include "core/optimisation/known_values.h"
 #include "core/optimisation/uncertainty/change_test.h"
-#include "core/optimisation/uncertainty/noise_corrected_information.h"
 #include "core/optimisation/uncertainty/observability.h"
 #include "core/optimisation/uncertainty/projected_information.h"
 #include "core/optimisation/uncertainty/quantity_covariance.h"
 #include "core/optimisation/uncertainty/scale_check.h"
+#include "core/optimisation/uncertainty/schur_columns.h"
 #include "core/optimisation/uncertainty/score_test.h"
 #include "core/optimisation/uncertainty/shared_sensors.h"
 

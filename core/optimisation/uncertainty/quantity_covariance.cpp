@@ -3,7 +3,7 @@
 #include "core/data/pixel_delay.h"
 #include "core/numerics/dense.h"
 #include "core/optimisation/uncertainty/projected_information.h"
-#include "core/optimisation/uncertainty/score_scatter.h"
+#include "core/optimisation/uncertainty/score_test.h"
 
 #include <Eigen/Geometry>
 

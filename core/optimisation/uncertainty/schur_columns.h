@@ -38,4 +38,11 @@ class KeptColumns {
 
 ProjectedInformation withColumns(const KeptColumns& kept, ProjectedInformation information);
 
+// Noise-corrected information: in directions without motion, noise in the trajectory's rates looks like
+// motion and would count as a measurement.
+
+// Subtracts a multiple of the noise's contribution from the measurements' information and from the scores,
+// direction by direction. If nothing remains, only priors count. Recordings with motion hardly change.
+ProjectedInformation withoutNoise(ProjectedInformation information);
+
 }  // namespace evical

@@ -6,9 +6,7 @@
 #include "core/geometry/projection_difference.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/dense.h"
-#include "core/optimisation/uncertainty/noise_corrected_information.h"
 #include "core/optimisation/uncertainty/schur_columns.h"
-#include "core/optimisation/uncertainty/score_scatter.h"
 
 #include <fmt/format.h>
 

@@ -3,12 +3,18 @@
 // (Rao's score test).
 #pragma once
 
-#include "core/data/calibration_setup.h"
-#include "core/data/calibration_state.h"
-#include "core/optimisation/optimisation_options.h"
 #include "core/optimisation/uncertainty/projected_information.h"
 
+#include "core/data/calibration_setup.h"
+#include "core/data/calibration_state.h"
+#include "core/numerics/robust.h"
+#include "core/optimisation/optimisation_options.h"
+
+#include <Eigen/Core>
+
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace evical {
 
@@ -31,5 +37,22 @@ HeldDoubts testHeldValues(const CalibrationInput& input, const CalibrationState&
 // The information if all fixed values are exact.
 ProjectedInformation withoutHeldValues(const CalibrationInput& input, const OptimisationOptions& options,
                                        ProjectedInformation information);
+
+// Scatter of the scores of stretches of time; equal to their information for white residuals and a correct
+// model.
+
+// Scores are summed over stretches of one correlation time. Weights fall to zero over the next three
+// stretches, so that correlations of up to about that time count in full.
+inline constexpr std::size_t kScoreLags = 3;
+
+inline Eigen::MatrixXd scoreScatter(const std::vector<Eigen::VectorXd>& scores, Eigen::Index size) {
+  return neweyWestByLag(scores, size, kScoreLags);
+}
+
+// Ratio of their variance to the information, mean over the numbers; 1 if model and sigmas are correct.
+inline double scatterRatio(const Eigen::MatrixXd& scatter, const Eigen::MatrixXd& information) {
+  constexpr double kNone = 1e-300;
+  return scatter.diagonal().cwiseQuotient(information.diagonal().cwiseMax(kNone)).mean();
+}
 
 }  // namespace evical

@@ -6,7 +6,6 @@
 #include "core/geometry/so3.h"
 #include "core/numerics/angles.h"
 #include "core/numerics/dense.h"
-#include "core/optimisation/uncertainty/noise_corrected_information.h"
 #include "core/optimisation/uncertainty/projected_information.h"
 #include "core/optimisation/uncertainty/schur_columns.h"
 

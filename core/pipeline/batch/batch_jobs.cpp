@@ -1,8 +1,8 @@
 #include "core/pipeline/batch/batch_jobs.h"
 
 #include "core/base/atomic_file.h"
-#include "core/base/distinct_names.h"
 #include "core/base/error.h"
+#include "core/base/nearest_name.h"
 #include "core/base/yaml_node.h"
 #include "core/pipeline/session/session.h"
 #include "core/pipeline/session/session_keys.h"

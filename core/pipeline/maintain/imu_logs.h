@@ -2,9 +2,12 @@
 #pragma once
 
 #include "core/data/imu_units.h"
+#include "core/maintenance/stop_detection.h"
 #include "core/pipeline/detection/merged_streams.h"
 #include "core/recording/separate_imu.h"
 #include "core/report/result_yaml.h"
+
+#include <Eigen/Geometry>
 
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -103,5 +107,19 @@ class ImuLogs {
   std::int64_t start_ns_ = 0;
   std::vector<std::string> notes_;
 };
+
+// Checks of the units of IMU logs from their values. Each throws CalibrationError (BadInput) with the setting
+// to change.
+struct ImuMeans {
+  std::string name;
+  std::span<const MeansWindow> windows;
+};
+
+// Detects forces in g or milli-g, and rates in deg/s.
+void checkUnits(const ImuMeans& imu);
+
+// Detects opposite specific forces of two IMUs on one body. `later_s` is added to the own times.
+void checkDirection(const ImuMeans& own, const ImuMeans& reference,
+                    const Eigen::Quaterniond& reference_from_own, double later_s);
 
 }  // namespace evical

@@ -40,4 +40,11 @@ void addPairQuantities(const TrackedPair& pair, const NamedResult& before, const
 // itself.
 void judge(Maintenance& maintenance);
 
+// If all IMUs change relative to one of them at the same time, that one has changed.
+
+// Steps of one quantity that all pairs have at the same time become one step of the reference IMU. Its
+// numbers are omitted, since each pair has them in other axes. For a single pair it is ambiguous which IMU
+// has changed.
+void nameChangedReference(Maintenance& maintenance);
+
 }  // namespace evical

@@ -1,8 +1,8 @@
 #include "core/pipeline/repeat/repeat_session.h"
 
-#include "core/base/distinct_names.h"
 #include "core/base/error.h"
 #include "core/base/how_to.h"
+#include "core/base/nearest_name.h"
 #include "core/optimisation/optimisation_options.h"
 #include "core/pipeline/session/session_keys.h"
 #include "core/pipeline/session/session_of_recording.h"

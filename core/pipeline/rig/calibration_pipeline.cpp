@@ -1,9 +1,9 @@
 #include "core/pipeline/rig/calibration_pipeline.h"
 
+#include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/base/how_to.h"
 #include "core/base/option_table.h"
-#include "core/base/process_memory.h"
 #include "core/base/time.h"
 #include "core/data/calibration_observer.h"
 #include "core/data/quality_warning.h"

@@ -3,7 +3,6 @@
 #include "core/recording/aedat/packet_compression.h"
 #include "core/recording/aedat/packets.h"
 #include "core/recording/aedat/stream_description.h"
-#include "core/recording/part_file.h"
 #include "core/recording/recording_writer.h"
 
 #include <fmt/format.h>

@@ -4,7 +4,6 @@
 #include "core/base/error.h"
 #include "core/base/time.h"
 #include "core/recording/hdf5/hdf5_filters.h"
-#include "core/recording/part_file.h"
 #include "core/recording/recording_writer.h"
 
 #include <fmt/format.h>

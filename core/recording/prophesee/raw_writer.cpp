@@ -1,6 +1,5 @@
 #include "core/base/error.h"
 #include "core/base/time.h"
-#include "core/recording/part_file.h"
 #include "core/recording/recording_writer.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "core/recording/ros/mcap_writer.h"
 
-#include "core/recording/part_file.h"
+#include "core/recording/recording_writer.h"
 #include "core/recording/ros/compression.h"
 #include "core/recording/ros/mcap_records.h"
 #include "core/recording/ros/message_cursor.h"

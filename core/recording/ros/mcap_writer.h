@@ -2,7 +2,7 @@
 // for random access.
 #pragma once
 
-#include "core/recording/part_file.h"
+#include "core/recording/recording_writer.h"
 #include "core/recording/ros/ros_writer.h"
 
 #include <cstdint>

@@ -4,7 +4,7 @@
 
 #include "core/base/time.h"
 #include "core/recording/byte_cursor.h"
-#include "core/recording/part_file.h"
+#include "core/recording/recording_writer.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "core/recording/ros/rosbag_writer.h"
 
 #include "core/base/time.h"
-#include "core/recording/part_file.h"
+#include "core/recording/recording_writer.h"
 #include "core/recording/ros/bag_records.h"
 #include "core/recording/ros/message_cursor.h"
 #include "core/recording/ros/message_types.h"

@@ -1,7 +1,7 @@
 // ROS 1 bags, format 2.0, with all records for random access.
 #pragma once
 
-#include "core/recording/part_file.h"
+#include "core/recording/recording_writer.h"
 #include "core/recording/ros/ros_writer.h"
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/report/html/html_report.h"
-#include "core/report/signal_prediction.h"
+#include "core/report/residual_statistics.h"
 
 #include <Eigen/Core>
 

@@ -8,7 +8,6 @@
 #include "core/report/html/report_page.h"
 #include "core/report/html/svg_plot.h"
 #include "core/report/result_table.h"
-#include "core/report/sensor_pose.h"
 #include "core/report/shown_quantity.h"
 
 #include <fmt/format.h>

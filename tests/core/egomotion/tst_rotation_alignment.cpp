@@ -2,7 +2,6 @@
 #include "core/egomotion/rotation_alignment.h"
 
 #include "core/base/error.h"
-#include "core/geometry/rigid_transform.h"
 #include "core/geometry/so3.h"
 #include "tests/support/moving_camera.h"
 #include "tests/support/test_program.h"

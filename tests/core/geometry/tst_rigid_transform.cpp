@@ -1,4 +1,3 @@
-#include "core/geometry/rigid_transform.h"
 
 #include "core/geometry/so3.h"
 #include "tests/support/test_program.h"

@@ -1,6 +1,6 @@
 #include "core/base/error.h"
 #include "core/initialisation/camera_only_initialisation.h"
-#include "core/initialisation/camera_trajectory.h"
+#include "core/initialisation/camera_poses.h"
 #include "core/initialisation/initialise.h"
 #include "core/numerics/angles.h"
 #include "core/optimisation/batch_optimiser.h"

@@ -1,5 +1,5 @@
 // Sums of noise with and without autocorrelation, as statistics of windows.
-#include "core/maintenance/noise_autocorrelation.h"
+#include "core/maintenance/pair_tracking.h"
 #include "tests/support/random_vector.h"
 #include "tests/support/test_program.h"
 

@@ -1,4 +1,4 @@
-#include "core/numerics/newey_west.h"
+#include "core/numerics/robust.h"
 
 #include "tests/support/test_program.h"
 

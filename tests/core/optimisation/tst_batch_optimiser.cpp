@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/time.h"
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 #include "core/optimisation/circle_errors.h"
 #include "tests/core/optimisation/simulated_rig.h"
 #include "tests/support/test_program.h"

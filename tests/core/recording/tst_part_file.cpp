@@ -2,7 +2,6 @@
 // are renamed.
 #include "core/base/error.h"
 #include "core/recording/conversion.h"
-#include "core/recording/part_file.h"
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/support/test_program.h"

@@ -1,6 +1,6 @@
 #include "core/base/error.h"
 #include "core/optimisation/sample_errors.h"
-#include "core/report/signal_prediction.h"
+#include "core/report/residual_statistics.h"
 #include "tests/core/optimisation/simulated_rig.h"
 #include "tests/support/test_program.h"
 

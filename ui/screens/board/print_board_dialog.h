@@ -7,6 +7,7 @@
 #include "core/printing/board_sheet.h"
 
 #include <QDialog>
+#include <QWidget>
 
 #include <optional>
 
@@ -85,6 +86,34 @@ class PrintBoardDialog : public QDialog {
   QToolButton* after_printing_;  // shows the last step
   QPushButton *save_, *blink_, *print_, *open_, *take_, *shrink_;
   QString written_file_;
+};
+
+}  // namespace evical::ui
+
+// Printed sheet with the layout of core, on the screen and on a printer.
+
+class QPainter;
+
+namespace evical::ui {
+
+// In millimetres of the sheet, in the painter's current transform.
+void paintSheet(QPainter& painter, const BoardSheet& sheet);
+
+class SheetPreview : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit SheetPreview(QWidget* parent = nullptr);
+
+  void setSheet(std::optional<BoardSheet> sheet);  // none: empty preview
+  QSize sizeHint() const override { return {420, 420}; }
+  QSize minimumSizeHint() const override { return {220, 160}; }
+
+ protected:
+  void paintEvent(QPaintEvent* event) override;
+
+ private:
+  std::optional<BoardSheet> sheet_;
 };
 
 }  // namespace evical::ui

@@ -2,7 +2,7 @@
 // Drawing of a motion: a person with the camera in front of the board, and the camera's image.
 #pragma once
 
-#include "core/geometry/rigid_transform.h"
+#include "core/geometry/so3.h"
 
 #include <QElapsedTimer>
 #include <QString>

@@ -3,7 +3,7 @@
 // of the rotation on a click. It can be copied in formats of other programs.
 #pragma once
 
-#include "core/report/sensor_pose.h"
+#include "core/report/shown_quantity.h"
 
 #include <QScrollArea>
 

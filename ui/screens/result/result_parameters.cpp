@@ -5,7 +5,6 @@
 #include "core/base/number.h"
 #include "core/numerics/angles.h"
 #include "core/report/result_table.h"
-#include "core/report/sensor_pose.h"
 #include "core/report/shown_quantity.h"
 #include "core/report/truth_comparison.h"
 #include "ui/screens/format_number.h"

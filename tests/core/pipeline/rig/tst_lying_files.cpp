@@ -1,7 +1,7 @@
 // Valid files with false contents: for any times and values, the whole pipeline ends in a result or an error
 // message, soon and in bounded memory. The fuzz target `calibrate` covers more of them.
+#include "core/base/child_process.h"
 #include "core/base/error.h"
-#include "core/base/process_memory.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "tests/support/lying_recording.h"
 #include "tests/support/test_program.h"

@@ -12,7 +12,7 @@
 namespace evical::test {
 
 template <class Number>
-std::string numberBytes(Number number, bool big_endian = false) {
+std::string rawNumber(Number number, bool big_endian = false) {
   std::string bytes(reinterpret_cast<const char*>(&number), sizeof number);
   return big_endian ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
 }
@@ -24,7 +24,7 @@ inline std::string npyFile(const std::string& header, const std::string& data, i
   std::string bytes = "\x93NUMPY";
   bytes += static_cast<char>(version);
   bytes += '\0';
-  bytes += numberBytes(static_cast<std::uint32_t>(size)).substr(0, length_bytes);
+  bytes += rawNumber(static_cast<std::uint32_t>(size)).substr(0, length_bytes);
   return bytes + header + std::string(size - header.size() - 1, ' ') + '\n' + data;
 }
 
@@ -66,9 +66,9 @@ inline std::string deflated(const std::string& content) {
 // With a comment behind it, as archives may have.
 inline std::string zipArchive(const std::vector<ZipFile>& files, bool end_in_64 = false,
                               const std::string& comment = {}) {
-  const auto word16 = [](std::uint64_t value) { return numberBytes(static_cast<std::uint16_t>(value)); };
-  const auto word32 = [](std::uint64_t value) { return numberBytes(static_cast<std::uint32_t>(value)); };
-  const auto word64 = [](std::uint64_t value) { return numberBytes(value); };
+  const auto word16 = [](std::uint64_t value) { return rawNumber(static_cast<std::uint16_t>(value)); };
+  const auto word32 = [](std::uint64_t value) { return rawNumber(static_cast<std::uint32_t>(value)); };
+  const auto word64 = [](std::uint64_t value) { return rawNumber(value); };
   std::string bytes, directory;
   for (const ZipFile& file : files) {
     std::string packed = file.deflated ? deflated(file.content) : file.content;

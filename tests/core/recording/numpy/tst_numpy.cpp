@@ -36,16 +36,16 @@ std::vector<Event> theEvents() {
 std::string value(double number, const std::string& type) {
   const bool swap = type[0] == '>';
   const std::string kind = type.substr(1);
-  if (kind == "i1" || kind == "b1") return numberBytes(static_cast<std::int8_t>(number));
-  if (kind == "u1") return numberBytes(static_cast<std::uint8_t>(number));
-  if (kind == "i2") return numberBytes(static_cast<std::int16_t>(number), swap);
-  if (kind == "u2") return numberBytes(static_cast<std::uint16_t>(number), swap);
-  if (kind == "i4") return numberBytes(static_cast<std::int32_t>(number), swap);
-  if (kind == "u4") return numberBytes(static_cast<std::uint32_t>(number), swap);
-  if (kind == "f4") return numberBytes(static_cast<float>(number), swap);
-  if (kind == "f8") return numberBytes(number, swap);
+  if (kind == "i1" || kind == "b1") return rawNumber(static_cast<std::int8_t>(number));
+  if (kind == "u1") return rawNumber(static_cast<std::uint8_t>(number));
+  if (kind == "i2") return rawNumber(static_cast<std::int16_t>(number), swap);
+  if (kind == "u2") return rawNumber(static_cast<std::uint16_t>(number), swap);
+  if (kind == "i4") return rawNumber(static_cast<std::int32_t>(number), swap);
+  if (kind == "u4") return rawNumber(static_cast<std::uint32_t>(number), swap);
+  if (kind == "f4") return rawNumber(static_cast<float>(number), swap);
+  if (kind == "f8") return rawNumber(number, swap);
   if (kind == "V3") return "abc";
-  return numberBytes(static_cast<std::int64_t>(number), swap);
+  return rawNumber(static_cast<std::int64_t>(number), swap);
 }
 
 struct Spelling {
@@ -338,9 +338,9 @@ void TestNumpy::twoCameras_areTwoStreams() {
 void TestNumpy::offsetAndSize_areTaken() {
   constexpr std::int64_t kOffset_us = 1'605'537'493'718'345;
   std::vector<ZipFile> files = fourArrays(true);
-  files.push_back({"t_offset.npy", npyArray("'<i8'", "()", numberBytes(kOffset_us))});
-  files.push_back({"width.npy", npyArray("'<i8'", "()", numberBytes(std::int64_t{64}))});
-  files.push_back({"height.npy", npyArray("'<i4'", "(1,)", numberBytes(std::int32_t{48}))});
+  files.push_back({"t_offset.npy", npyArray("'<i8'", "()", rawNumber(kOffset_us))});
+  files.push_back({"width.npy", npyArray("'<i8'", "()", rawNumber(std::int64_t{64}))});
+  files.push_back({"height.npy", npyArray("'<i4'", "(1,)", rawNumber(std::int32_t{48}))});
   const Contents contents = read(zipArchive(files));
   QCOMPARE(contents.streams[0].resolution_px, (Resolution{64, 48}));
   QCOMPARE(contents.events.at(0).front().time_ns, kNumpyStart_ns + 1000 * kOffset_us);
@@ -426,7 +426,7 @@ void TestNumpy::rowsThatAreNoEvents_areLeftOut() {
                              {1.8, 1.5, 2, 1}, {1e300, 1, 2, 1}, {1.9, kNone, 2, 0}, {2.0, 3, 65535, 0}};
   std::string bytes;
   for (const auto& row : table)
-    for (const double number : row) bytes += numberBytes(number);
+    for (const double number : row) bytes += rawNumber(number);
   const Contents contents =
       read(npyArray("[('t_s', '<f8'), ('x', '<f8'), ('y', '<f8'), ('p', '<f8')]", "(8,)", bytes));
   QVERIFY(sameEvents(contents.events.at(0), {{1'500'000'000, 1, 2, true}, {2'000'000'000, 3, 65535, false}}));
@@ -461,7 +461,7 @@ void TestNumpy::timesOfFewBits_areSaid() {
     std::string bytes;
     for (int i = 0; i < 100; ++i)
       for (const double part : {start_s + 0.001 * i + 0.0005, 3.0, 4.0, 1.0})
-        bytes += numberBytes(static_cast<float>(part));
+        bytes += rawNumber(static_cast<float>(part));
     const Contents contents = read(npyArray("'<f4'", "(100, 4)", bytes));
     QCOMPARE(contents.eventCount(), std::size_t{100});
     const bool said = contents.hasFault(FaultKind::Encoding);

@@ -1,4 +1,4 @@
-#include "core/recording/part_file.h"
+#include "core/recording/recording_writer.h"
 
 #include "core/base/error.h"
 
