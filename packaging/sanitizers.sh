@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs the desktop program's tests with the address and undefined-behaviour sanitizers, and calibrations in the
-# program's pattern of threads, but without Qt, with the thread sanitizer. Run by hand: the build needs 34 min of processor
-# time, and the tests more than an hour on two cores.
+# Runs the desktop program's tests with the address and undefined-behaviour sanitizers, those of the Python module with the
+# address sanitizer, and calibrations in the program's pattern of threads, but without Qt, with the thread sanitizer. Run by
+# hand: the build needs 34 min of processor time, and the tests more than an hour on two cores.
 # Usage: packaging/sanitizers.sh [asan|tsan]    both without an argument
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -18,6 +18,9 @@ if [ "$which" != tsan ]; then
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
   export QTEST_FUNCTION_TIMEOUT=3600000 # ms
   ctest --preset asan -L '^ui$' --timeout 3600
+  cmake --fresh --preset ci
+  cmake --build --preset ci
+  ctest --preset ci -L '^nightly$'
 fi
 
 if [ "$which" != asan ]; then

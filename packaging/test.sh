@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs missing packages, checks the format, the texts and the size of each folder, builds with warnings as errors, runs
 # clang-tidy on the sources that differ from the upstream branch, and the tests. With --all, like CI: clang-tidy on recently
-# changed sources, and also the tests of tests/slow_tests.txt. At the end it prints wall time and processor time of each step.
-# Fails if a build without hits in ccache needed much more processor time than its budget.
+# changed sources, and also the tests of tests/slow_tests.txt; those labelled nightly are left to packaging/sanitizers.sh.
+# At the end it prints wall time and processor time of each step. Fails if a build without hits in ccache needed much more
+# processor time than its budget.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case "${1:-}" in
@@ -83,10 +84,10 @@ run_tests() {
     return 1
   fi
   if [ "$all" = --all ]; then
-    ctest --preset ci -LE realtime
+    ctest --preset ci -LE 'realtime|nightly'
   else
     echo "Without the $known tests of tests/slow_tests.txt: packaging/test.sh --all runs them, too."
-    ctest --preset ci -LE realtime -E "^($slow)$"
+    ctest --preset ci -LE 'realtime|nightly' -E "^($slow)$"
   fi
 }
 

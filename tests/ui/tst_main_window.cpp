@@ -580,7 +580,7 @@ class TestMainWindow : public QObject {
     QVERIFY(form->isVisible());
     auto* const search = form->findChild<QLineEdit*>(QString(), Qt::FindDirectChildrenOnly);
     QTest::mouseClick(search, Qt::LeftButton);
-    QTest::keyClicks(search, "least circles");
+    QTest::keyClicks(search, "min circles");
     auto* const field = form->editor("grid.min_circles")->findChild<QLineEdit*>();
     QVERIFY(field->isVisible());
     field->selectAll();

@@ -158,7 +158,7 @@ class TestOptionForm : public QObject {
 
   void searchedWords_standOut() {
     OptionFormFixture test;
-    QTest::keyClicks(test.search(), "least circ");
+    QTest::keyClicks(test.search(), "min circ");
     QVERIFY(test.allText("grid.min_circles").contains("background-color"));
     test.search()->clear();
     QVERIFY(!test.allText("grid.min_circles").contains("background-color"));
@@ -265,7 +265,7 @@ class TestOptionForm : public QObject {
   void search_leavesWhatMatchesInNameOrHelp() {
     OptionFormFixture test;
     test.form.showExpert(true);
-    QTest::keyClicks(test.search(), "least circles");
+    QTest::keyClicks(test.search(), "min circles");
     QVERIFY(test.form.shownOptions().contains("grid.min_circles"));
     QVERIFY(test.form.shownOptions().size() < 8);
     test.search()->setText("zzz nothing has this");
@@ -312,7 +312,7 @@ class TestOptionForm : public QObject {
     applyTheme(*qApp, Appearance::Light);
   }
 
-  void everyOption_isWholeAtTheLeastWidth() {
+  void everyOption_isWholeAtTheMinimumWidth() {
     OptionFormFixture test;
     test.form.showExpert(true);
     for (QToolButton* const heading : test.form.findChildren<QToolButton*>("group"))
