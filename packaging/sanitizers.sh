@@ -20,7 +20,7 @@ if [ "$which" != tsan ]; then
   ctest --preset asan -L '^ui$' --timeout 3600
   cmake --fresh --preset ci
   cmake --build --preset ci
-  ctest --preset ci -L '^nightly$'
+  ctest --preset ci -R '^python_asan'
 fi
 
 if [ "$which" != asan ]; then

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs missing packages, checks the format, the texts and the size of each folder, builds with warnings as errors, runs
 # clang-tidy on the sources that differ from the upstream branch, and the tests. With --all, like CI: clang-tidy on recently
-# changed sources, and also the tests of tests/slow_tests.txt; those labelled nightly are left to packaging/sanitizers.sh.
+# changed sources, and also the tests of tests/slow_tests.txt; those labelled nightly are left to packaging/nightly.sh.
 # At the end it prints wall time and processor time of each step. Fails if a build without hits in ccache needed much more
 # processor time than its budget.
 set -euo pipefail
