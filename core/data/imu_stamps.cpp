@@ -36,7 +36,7 @@ constexpr std::tuple kStampFields{
           "Largest relative scatter of the distances between unusual intervals of a beat; 1 for losses."},
     Field{"beat_share", &StampOptions::beat_share, 0.5, within(0.0, 1.0), "",
           "Smallest share of the recording with a beat; a stretch of it may have another rate or clock."},
-    Field{"longest_beat", &StampOptions::longest_beat, 10.0, within(1.0, 1000.0), "samples",
+    Field{"max_beat", &StampOptions::max_beat, 10.0, within(1.0, 1000.0), "samples",
           "Longest constant distance between unusual intervals of a beat; a driver may drop each fiftieth "
           "sample."},
     Field{"gap_periods", &StampOptions::gap_periods, 2.5, within(1.0, 100.0), "periods",
@@ -127,7 +127,7 @@ bool haveBeat(const Intervals& intervals, const StampOptions& options) {
   const double count = static_cast<double>(distances.size()), mean = sum / count;
   const double variance = squares / count - mean * mean;
   // A driver that drops every fiftieth sample has constant distances, a beat of two clocks hardly ever.
-  if (variance < kConstant && mean > options.longest_beat) return false;
+  if (variance < kConstant && mean > options.max_beat) return false;
   return variance < options.beat_scatter * options.beat_scatter * mean * mean;
 }
 

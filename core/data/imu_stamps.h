@@ -20,7 +20,7 @@ struct StampOptions {
   double share_of_copies;
   double beat_scatter;
   double beat_share;
-  double longest_beat;
+  double max_beat;
   double gap_periods;
   double lost_periods;
 

@@ -71,7 +71,7 @@ class ExtentJudge {
         options_(options),
         centre_sigma_px_(options.extent.min_sigma_px),
         radius_sigma_px_(options.extent.min_sigma_px) {
-    // Of the board's fit, in squares of a circle's sigma.
+    // The information of the board's fit, in squares of a circle's sigma.
     Eigen::Matrix<double, 8, 8> information = 1e-6 * Eigen::Matrix<double, 8, 8>::Identity();
     double centres_px2 = 0.0, radii_px2 = 0.0, radii_px = 0.0, count = 0.0;
     for (const CircleObservation& circle : trace.circles) {

@@ -13,11 +13,11 @@ namespace {
 constexpr std::tuple kEdgeSlopeFields{
     Field{"radius_px", &EdgeSlopeOptions::radius_px, 2, within(1, 5), "px",
           "Half width of the neighbourhood of the plane fit."},
-    Field{"largest_error_px", &EdgeSlopeOptions::largest_error_px, 0.6, within(0.05, 5.0), "px",
+    Field{"max_error_px", &EdgeSlopeOptions::max_error_px, 0.6, within(0.05, 5.0), "px",
           "Largest deviation of a neighbour from the plane, as a distance that the edge travels."},
     Field{"min_share", &EdgeSlopeOptions::min_share, 0.6, within(0.2, 1.0), "",
           "Smallest share of inliers in the neighbourhood."},
-    Field{"longest_crossing_s", &EdgeSlopeOptions::longest_crossing_s, 0.12, within(1e-3, 1.0), "s",
+    Field{"max_crossing_s", &EdgeSlopeOptions::max_crossing_s, 0.12, within(1e-3, 1.0), "s",
           "Longest time of an edge in the neighbourhood; slower edges may have changed their speed."},
     Field{"fastest_px_s", &EdgeSlopeOptions::fastest_px_s, 4000.0, within(10.0, 1e6), "px/s",
           "Largest speed of edges; faster ones are flicker of a lamp."}};
@@ -39,7 +39,7 @@ EdgeSlopeFinder::EdgeSlopeFinder(Resolution resolution_px, const EdgeSlopeOption
     : resolution_px_(resolution_px),
       options_(options),
       window_ns_(nanosecondsFrom(window_s)),
-      margin_ns_(nanosecondsFrom(options.longest_crossing_s)),
+      margin_ns_(nanosecondsFrom(options.max_crossing_s)),
       sink_(std::move(sink)) {}
 
 void EdgeSlopeFinder::add(const std::vector<EdgeCrossing>& bursts, std::int64_t complete_until_ns) {
@@ -106,7 +106,7 @@ void EdgeSlopeFinder::nearestBursts(const EdgeCrossing& centre, const Plane& pla
         const double time_s = 1e-9 * static_cast<double>(times_ns_[k] - centre.time_ns);
         if (std::abs(time_s - expected_s) < std::abs(nearest_s - expected_s)) nearest_s = time_s;
       }
-      if (std::abs(nearest_s) <= options_.longest_crossing_s) neighbours_.push_back({dx, dy, nearest_s});
+      if (std::abs(nearest_s) <= options_.max_crossing_s) neighbours_.push_back({dx, dy, nearest_s});
     }
   }
 }
@@ -155,12 +155,12 @@ bool EdgeSlopeFinder::slopeAt(const EdgeCrossing& burst, EdgeSlope& slope) {
   if (!fitPlane(std::numeric_limits<double>::infinity(), plane)) return false;
   for (int refit = 0; refit < kRefits; ++refit) {
     nearestBursts(burst, plane);
-    const double largest_error_s = options_.largest_error_px * std::hypot(plane.a, plane.b);
+    const double largest_error_s = options_.max_error_px * std::hypot(plane.a, plane.b);
     if (!fitPlane(largest_error_s, plane)) return false;
   }
   const double slope_s_px = std::hypot(plane.a, plane.b);
   const double crossing_s = 2.0 * r * (std::abs(plane.a) + std::abs(plane.b));
-  if (slope_s_px * options_.fastest_px_s < 1.0 || crossing_s > options_.longest_crossing_s) return false;
+  if (slope_s_px * options_.fastest_px_s < 1.0 || crossing_s > options_.max_crossing_s) return false;
   slope.time_ns = burst.time_ns;
   slope.x_px = burst.x_px;
   slope.y_px = burst.y_px;

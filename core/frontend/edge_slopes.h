@@ -19,9 +19,9 @@ namespace evical {
 
 struct EdgeSlopeOptions {
   int radius_px;
-  double largest_error_px;
+  double max_error_px;
   double min_share;
-  double longest_crossing_s;
+  double max_crossing_s;
   double fastest_px_s;
 
   EdgeSlopeOptions();  // the defaults

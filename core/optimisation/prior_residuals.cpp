@@ -130,7 +130,8 @@ void addPriors(ProblemBuilder& builder) {
                      {gravity});
 }
 
-// The session's priors and given values. A reference has no pose.
+// Adds the session's priors, and fixes given values. This includes a reference: its clock's drift has a block
+// even if it is not estimated.
 void addKnownValues(ProblemBuilder& builder) {
   forEachSensorKind([&](auto kind) {
     auto& sensors = kind.of(builder.parameters.moved());

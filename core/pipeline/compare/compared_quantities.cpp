@@ -175,7 +175,7 @@ class Comparison {
     });
   }
 
-  // What a change of the quantity that was added last does in the image.
+  // Adds the effect in the image of a change of the quantity that was added last.
   void addImageOf(const CameraState& now, const QuantityInfo& info, ComparedQuantity& added) {
     if (!now.lens.inUse()) return;
     if (info.id == QuantityId::Rotation) added.at_edge = byTurn(now);

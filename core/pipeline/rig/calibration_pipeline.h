@@ -56,8 +56,8 @@ CalibrationOutcome runCalibration(const Session& session, DetectionResult detect
                                   const RunContext& context,
                                   std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
 
-// As runCalibration, but returns only a run that is done. Throws CalibrationError for a session that cannot
-// be calibrated, and Cancelled when asked to stop.
+// Calibrates as runCalibration does, but returns only a run that is done. Throws CalibrationError for a
+// session that cannot be calibrated, and Cancelled when asked to stop.
 CalibrationRun calibrate(const Session& session, const RunContext& context);
 CalibrationRun calibrate(const Session& session, DetectionResult detections, const RunContext& context,
                          std::vector<std::optional<IntrinsicsResult>> intrinsics = {});
