@@ -5,6 +5,7 @@
 #include "core/data/calibration_state.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
+#include "core/geometry/printed_pattern.h"
 #include "core/geometry/so3.h"
 
 #include <Eigen/Core>
@@ -248,7 +249,7 @@ struct Scenario {
   Board board;
   double board_stretch = 0.0;  // of the real board: 0.01 makes its columns 1 % longer than those of `board`
   SimulatedBow board_bow = {};
-  int tag_turns = 0;  // quarter turns of the board's tags within their squares, clockwise
+  TagPrint tag_print;  // of the board, if it has tags
   std::vector<SimulatedBoard> further_boards = {};
   SceneModel scene;
   RoomModel room = {};

@@ -34,10 +34,13 @@ void validateBoard(const Board& board, const std::string& place) {
 
 void readBoard(const YamlNode& map, Scenario& scenario) {
   map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m", "stretch", "row_bow_m",
-                 "column_bow_m", "twist_m", "tag_size_m", "tag_rotation_deg"});
+                 "column_bow_m", "twist_m", "tag_size_m", "tag_rotation_deg", "tag_border_bits",
+                 "markers"});
   readMeasures(map, scenario.board);
   if (const auto turned = map.find("tag_rotation_deg"))
-    scenario.tag_turns = static_cast<int>(turned->choice({"0", "90", "180", "270"}));
+    scenario.tag_print.quarter_turns = static_cast<int>(turned->choice({"0", "90", "180", "270"}));
+  get(map, "tag_border_bits", scenario.tag_print.border_bits, 1, 2);
+  get(map, "markers", scenario.tag_print.markers);
   get(map, "stretch", scenario.board_stretch, -0.1, 0.1, "");
   get(map, "row_bow_m", scenario.board_bow.rows_m, -kLargestBow_m, kLargestBow_m, "m");
   get(map, "column_bow_m", scenario.board_bow.columns_m, -kLargestBow_m, kLargestBow_m, "m");
@@ -88,7 +91,7 @@ Scenario sceneOf(const Scenario& scenario, std::size_t camera) {
   const SimulatedBoard* const further = furtherBoardOf(scenario, camera);
   if (!further) return scene;
   scene.board = further->board;
-  scene.tag_turns = 0;
+  scene.tag_print = {};
   scene.board_stretch = 0.0;
   scene.board_bow = {};
   scene.scene.hand = {};

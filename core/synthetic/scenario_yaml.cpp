@@ -348,10 +348,6 @@ void validateWhole(const Scenario& scenario, const std::string& file) {
       throw badInput(fmt::format("{}: stream of {}", file, camera.name),
                      fmt::format("'{}' is not a valid name for a folder of frames", camera.stream),
                      "Give a name without slashes");
-    if (!camera.frames && !boardOf(scenario, k).hasCircles() && scenario.scene.blink_hz <= 0.0)
-      throw badInput(fmt::format("{}: board.type", file),
-                     fmt::format("{} is an event camera, but the board has no circles", camera.name),
-                     "Set frames for the camera, use a board of circles, or set scene.blink_hz");
   }
 }
 

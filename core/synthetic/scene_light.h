@@ -6,7 +6,7 @@
 #include "core/synthetic/scenario.h"
 
 #include "core/geometry/board.h"
-#include "core/geometry/marker_bits.h"
+#include "core/geometry/printed_pattern.h"
 #include "core/geometry/so3.h"
 
 #include <Eigen/Core>
@@ -17,12 +17,10 @@
 
 namespace evical {
 
-// Printed pattern of a board: circles, squares, or tags like Kalibr's AprilGrid, with a border of two modules
-// and a small black square at every corner between tags, or ChArUco boards with usual markers.
+// Printed pattern of any board: circles, or squares.
 class BoardPattern {
  public:
-  // `tag_turns`: quarter turns of each tag or marker within its square, clockwise.
-  explicit BoardPattern(const Board& board, int tag_turns = 0);
+  BoardPattern(const Board& board, const TagPrint& print);
 
   // True on ink, at metres on the board; paper beyond its edge.
   bool isInk(const Eigen::Vector2f& p) const;
@@ -33,15 +31,11 @@ class BoardPattern {
 
  private:
   bool inCircle(const Eigen::Vector2f& p) const;
-  bool inDarkSquare(const Eigen::Vector2f& p) const;
-  bool inTag(const Eigen::Vector2f& p) const;
-  bool inMarker(const Eigen::Vector2f& p) const;
 
   Board board_;
-  float spacing_m_, radius_m_, tag_m_;
+  float spacing_m_, radius_m_;
   Eigen::Vector2f low_m_, high_m_;
-  std::vector<TagBits> tags_;
-  std::vector<PatternBits> markers_;
+  PrintedPattern squares_;  // without circles
 };
 
 class SceneLight {

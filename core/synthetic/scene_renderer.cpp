@@ -1,6 +1,7 @@
 #include "core/synthetic/scene_renderer.h"
 
 #include "core/geometry/camera_model.h"
+#include "core/geometry/printed_pattern.h"
 
 #include <Eigen/LU>
 
@@ -63,6 +64,7 @@ SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
                              row_spacing_m_ * (board_.rows - 1));
   board_low_m_ = Eigen::Vector2d::Constant(-scene_.margin_m).cast<float>();
   board_high_m_ = (last.array() + scene_.margin_m).matrix().cast<float>();
+  if (!board_.hasCircles()) layBoxes(scenario);
   const UndistortionTable ideal(camera);
   const Eigen::Vector2d f = idealFocalLength_px(camera);
   for (int y = 0; y < height_px_; ++y) {
@@ -83,6 +85,16 @@ SceneRenderer::SceneRenderer(const Scenario& scenario, std::size_t index)
     const double sigmas = (2.0 * i / kEdgeSteps - 1.0) * kEdgeReach;
     edge_table_.push_back(static_cast<float>(0.5 * std::erfc(-sigmas / std::sqrt(2.0))));
   }
+}
+
+void SceneRenderer::layBoxes(const Scenario& scenario) {
+  const Eigen::Vector2d stretch(1.0, 1.0 + scenario.board_stretch);
+  for (const PaintedBox& box : PrintedPattern(board_, scenario.tag_print).inkBoxes())
+    boxes_.push_back({box.corner_m.cwiseProduct(stretch).cast<float>(),
+                      (box.corner_m + box.size_m).cwiseProduct(stretch).cast<float>()});
+  const double beyond_m = board_.printBeyond_m() + scene_.margin_m;
+  board_low_m_ = Eigen::Vector2d::Constant(-beyond_m).cast<float>();
+  board_high_m_ = (board_.extent_m().cwiseProduct(stretch).array() + beyond_m).matrix().cast<float>();
 }
 
 // Homography of the plane at this distance behind the board's.
@@ -144,6 +156,13 @@ void SceneRenderer::findCircles(const Eigen::Vector2f& low_m, const Eigen::Vecto
   }
 }
 
+void SceneRenderer::findBoxes(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m,
+                              TileView& view) const {
+  for (const InkBox& box : boxes_)
+    if ((box.low_m.array() < high_m.array()).all() && (box.high_m.array() > low_m.array()).all())
+      view.boxes.push_back(box);
+}
+
 void SceneRenderer::look(const Tile& tile, const Instants& instants, TileView& view) const {
   lookAtPlanes(tile, instants, view);
   if (is_visited_) lookForVisits(tile, instants, view);
@@ -154,6 +173,7 @@ void SceneRenderer::lookAtPlanes(const Tile& tile, const Instants& instants, Til
   view.constant = false;
   view.travel_px = 0.0f;
   view.circles_m.clear();
+  view.boxes.clear();
   Eigen::Vector2f low = Eigen::Vector2f::Constant(std::numeric_limits<float>::max()), high = -low;
   float metres_per_px = 0.0f;
   bool visible = true;
@@ -181,14 +201,17 @@ void SceneRenderer::lookAtPlanes(const Tile& tile, const Instants& instants, Til
   view.reach_m = visible ? kSlack * kEdgeReach * blur_px_ * metres_per_px : std::numeric_limits<float>::max();
   if (!visible) low = board_low_m_, high = board_high_m_;
   const Eigen::Array2f low_reach = low.array() - reach, high_reach = high.array() + reach;
-  findCircles(low_reach.matrix(), high_reach.matrix(), view);
+  if (boxes_.empty())
+    findCircles(low_reach.matrix(), high_reach.matrix(), view);
+  else
+    findBoxes(low_reach.matrix(), high_reach.matrix(), view);
   if (!visible) return;
   if ((high_reach < board_low_m_.array()).any() || (low_reach > board_high_m_.array()).any()) {
     view.content = Content::Clutter;
     view.constant = scene_.clutter_contrast <= 0.0;
   } else if ((low_reach > board_low_m_.array()).all() && (high_reach < board_high_m_.array()).all()) {
-    view.constant = view.circles_m.empty();
-    view.content = view.constant ? Content::Paper : Content::Circles;
+    view.constant = view.circles_m.empty() && view.boxes.empty();
+    view.content = view.constant ? Content::Paper : Content::Pattern;
   }
 }
 
@@ -229,6 +252,20 @@ float SceneRenderer::disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& 
   const float metres_per_px = (board_per_px.transpose() * outwards).norm();
   const float shrunk_px = 0.5f * blur_px_ * blur_px_ * metres_per_px / radius;
   return edge((radius - distance) / metres_per_px - shrunk_px);
+}
+
+// Share of a pixel in the ink of squares: exact along their edges; within the blur of a corner of a tilted
+// board, approximate.
+float SceneRenderer::inkOf(const Eigen::Vector2f& point_m, const Eigen::Matrix2f& board_per_px,
+                           const TileView& view) const {
+  const Eigen::Array2f px_per_m = board_per_px.rowwise().norm().array().inverse();
+  float ink = 0.0f;
+  for (const InkBox& box : view.boxes) {
+    const Eigen::Array2f from_low_px = (point_m - box.low_m).array() * px_per_m,
+                         from_high_px = (point_m - box.high_m).array() * px_per_m;
+    ink += (edge(from_low_px.x()) - edge(from_high_px.x())) * (edge(from_low_px.y()) - edge(from_high_px.y()));
+  }
+  return std::min(ink, 1.0f);
 }
 
 // From a pixel's place on the plane to its place on the sheet.
@@ -277,6 +314,7 @@ template <bool kBent>
     if (square >= outer * outer) continue;
     ink = square < inner * inner ? 1.0f : std::max(ink, disk(away, boardPerPixel()));
   }
+  if (!view.boxes.empty()) ink = inkOf(point, boardPerPixel(), view);
   return {on_board, ink, point};
 }
 
@@ -309,7 +347,7 @@ void SceneRenderer::render(const Instant& instant, const Tile& tile, const TileV
         case Content::Clutter:
           *log_intensity = clutter(instant, rays_[pixel]);
           break;
-        case Content::Circles:
+        case Content::Pattern:
         case Content::Mixed:
           *log_intensity =
               surface_.isBent() ? onBoard<true>(instant, pixel, view) : onBoard<false>(instant, pixel, view);

@@ -42,14 +42,20 @@ class SceneRenderer {
   int tileRows() const { return (height_px_ + kTile_px - 1) / kTile_px; }
   Tile tile(int column, int row) const;
 
+  // Ink of a board of squares.
+  struct InkBox {
+    Eigen::Vector2f low_m, high_m;
+  };
+
   // Content of a tile from the first to the last of three instants.
-  enum class Content { Paper, Circles, Clutter, Mixed };
+  enum class Content { Paper, Pattern, Clutter, Mixed };
   struct TileView {
     Content content = Content::Mixed;
     bool constant = false;                   // uniform shade
     float travel_px = 0.0f;                  // largest image motion there
     float reach_m = 0.0f;                    // largest distance at which an edge on the board has an effect
     std::vector<Eigen::Vector2f> circles_m;  // centres of possibly visible circles
+    std::vector<InkBox> boxes;               // of ink, possibly visible
     // Passing objects: figures in a set of bits, the hand's shadow, the lamp in the varnish.
     unsigned figures = 0;
     bool shadow = false, gloss = false;
@@ -77,6 +83,7 @@ class SceneRenderer {
     float metres_per_px = 0.0f;
   };
 
+  void layBoxes(const Scenario& scenario);
   static Eigen::Matrix3f planeFromRay(const RigidTransform& camera_from_world, double depth_m);
   static Eigen::Matrix2f planeDerivative(const Eigen::Matrix3f& plane_from_ray, const Eigen::Vector2f& point,
                                          float depth);
@@ -92,6 +99,8 @@ class SceneRenderer {
   float sheet(const Eigen::Vector2f& point_m, const Eigen::Matrix2f& board_per_px) const;
   float disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& board_per_px) const;
   float travel(std::size_t pixel, const Instants& instants) const;
+  float inkOf(const Eigen::Vector2f& point_m, const Eigen::Matrix2f& board_per_px, const TileView& view) const;
+  void findBoxes(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, TileView& view) const;
   void findCircles(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, TileView& view) const;
 
   // visited_scene.cpp
@@ -112,7 +121,8 @@ class SceneRenderer {
   Scenario scenario_;
   Board board_;
   BoardSurface surface_;
-  double row_spacing_m_;  // of the real board
+  double row_spacing_m_;       // of the real board
+  std::vector<InkBox> boxes_;  // of a board without circles
   SceneModel scene_;
   bool is_visited_;  // at times: by figures, or by a lamp's reflection in the varnish
   Eigen::Vector3f lamp_m_;

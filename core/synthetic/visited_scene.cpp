@@ -98,7 +98,7 @@ void SceneRenderer::lookForVisits(const Tile& tile, const Instants& instants, Ti
   };
   float travel_px = 0.0f;
   Box<3> mirrored;
-  const bool all_board = view.content == Content::Paper || view.content == Content::Circles;
+  const bool all_board = view.content == Content::Paper || view.content == Content::Pattern;
   for (const Instant* instant : instants) {
     for (const PlacedFigure& placed : instant->figures) {
       if (all_board && !placed.figure.isInFront()) continue;

@@ -4,7 +4,7 @@
 #include "ui/scene/trajectory_scene.h"
 
 #include "core/base/error.h"
-#include "core/printing/board_squares.h"
+#include "core/geometry/printed_pattern.h"
 
 #include <vtkPointData.h>
 #include <vtkPolyData.h>

@@ -45,7 +45,7 @@ class TestSimulatedFrames : public QObject {
   void initTestCase() {
     folder_ = std::make_unique<QTemporaryDir>();
     scenario_ = rollingShutter();
-    scenario_.tag_turns = 3;  // of the tags within their squares: the result does not depend on it
+    scenario_.tag_print.quarter_turns = 3;  // of the tags within their squares: the result does not depend on it
     simulate(scenario_, path(), RunContext{});
   }
 
@@ -64,7 +64,7 @@ class TestSimulatedFrames : public QObject {
     QFETCH(int, turns);
     Scenario scenario = scenario_;
     scenario.duration_s = 2.0;
-    scenario.tag_turns = turns;
+    scenario.tag_print.quarter_turns = turns;
     if (charuco) {
       scenario.board = {};
       scenario.board.type = BoardType::Charuco;
