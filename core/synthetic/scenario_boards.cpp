@@ -34,8 +34,7 @@ void validateBoard(const Board& board, const std::string& place) {
 
 void readBoard(const YamlNode& map, Scenario& scenario) {
   map.allowOnly({"type", "circles", "rows", "cols", "spacing_m", "radius_m", "stretch", "row_bow_m",
-                 "column_bow_m", "twist_m", "tag_size_m", "tag_rotation_deg", "tag_border_bits",
-                 "markers"});
+                 "column_bow_m", "twist_m", "tag_size_m", "tag_rotation_deg", "tag_border_bits", "markers"});
   readMeasures(map, scenario.board);
   if (const auto turned = map.find("tag_rotation_deg"))
     scenario.tag_print.quarter_turns = static_cast<int>(turned->choice({"0", "90", "180", "270"}));

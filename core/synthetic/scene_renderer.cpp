@@ -263,7 +263,8 @@ float SceneRenderer::inkOf(const Eigen::Vector2f& point_m, const Eigen::Matrix2f
   for (const InkBox& box : view.boxes) {
     const Eigen::Array2f from_low_px = (point_m - box.low_m).array() * px_per_m,
                          from_high_px = (point_m - box.high_m).array() * px_per_m;
-    ink += (edge(from_low_px.x()) - edge(from_high_px.x())) * (edge(from_low_px.y()) - edge(from_high_px.y()));
+    ink +=
+        (edge(from_low_px.x()) - edge(from_high_px.x())) * (edge(from_low_px.y()) - edge(from_high_px.y()));
   }
   return std::min(ink, 1.0f);
 }

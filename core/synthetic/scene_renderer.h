@@ -99,7 +99,8 @@ class SceneRenderer {
   float sheet(const Eigen::Vector2f& point_m, const Eigen::Matrix2f& board_per_px) const;
   float disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& board_per_px) const;
   float travel(std::size_t pixel, const Instants& instants) const;
-  float inkOf(const Eigen::Vector2f& point_m, const Eigen::Matrix2f& board_per_px, const TileView& view) const;
+  float inkOf(const Eigen::Vector2f& point_m, const Eigen::Matrix2f& board_per_px,
+              const TileView& view) const;
   void findBoxes(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, TileView& view) const;
   void findCircles(const Eigen::Vector2f& low_m, const Eigen::Vector2f& high_m, TileView& view) const;
 

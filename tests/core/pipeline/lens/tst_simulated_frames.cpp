@@ -45,7 +45,8 @@ class TestSimulatedFrames : public QObject {
   void initTestCase() {
     folder_ = std::make_unique<QTemporaryDir>();
     scenario_ = rollingShutter();
-    scenario_.tag_print.quarter_turns = 3;  // of the tags within their squares: the result does not depend on it
+    scenario_.tag_print.quarter_turns =
+        3;  // of the tags within their squares: the result does not depend on it
     simulate(scenario_, path(), RunContext{});
   }
 
