@@ -54,7 +54,7 @@ struct Deviation {
   double radius_px = 0.0;
 };
 
-Deviation deviationOf(const CircleObservation& circle, const CircleImage& place, const BoardMotion& motion,
+Deviation deviationOf(const CircleObservation& circle, const OutlineImage& place, const BoardMotion& motion,
                       double middle_s) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> shape(place.shape);
   return {circle.centre_px - motion.travel(circle.centre_px, circle.time_s - middle_s) - place.centre_px,

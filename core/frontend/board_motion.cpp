@@ -79,75 +79,29 @@ BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns) {
   return next;
 }
 
-std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& h, const BoardScene& scene, int index) {
-  const Eigen::Vector2d c = scene.board.point_m(index);
-  const double r2 = scene.board.radius_m * scene.board.radius_m;
-  Eigen::Matrix3d dual;
-  dual << c.x() * c.x() - r2, c.x() * c.y(), c.x(), c.x() * c.y(), c.y() * c.y() - r2, c.y(), c.x(), c.y(),
-      1.0;
-  const Eigen::Matrix3d q = h * dual * h.transpose();
-  if (!((h * Eigen::Vector3d(c.x(), c.y(), 1.0)).z() > 0.0) || !(q(2, 2) > 0.0)) return std::nullopt;
-  CircleImage out;
-  out.circle = index;
-  out.centre_px = q.topRightCorner<2, 1>() / q(2, 2);
-  // Dual conic about its own centre: minus the matrix of squared semi-axes.
-  const Eigen::Matrix2d axes2 = out.centre_px * out.centre_px.transpose() - q.topLeftCorner<2, 2>() / q(2, 2);
-  const double det = axes2.determinant();
-  if (!(det > 0.0) || !(axes2.trace() > 0.0)) return std::nullopt;
-  out.shape = axes2.inverse();
-  const double half_trace = 0.5 * axes2.trace();
-  out.max_radius_px = std::sqrt(half_trace + std::sqrt(std::max(half_trace * half_trace - det, 0.0)));
-  out.sensor_centre_px = out.centre_px;
-  out.sensor_radius_px = out.max_radius_px;
-  if (scene.camera) {
-    out.sensor_centre_px = pixelFromIdeal(*scene.camera, out.centre_px);
-    const double scale = std::sqrt(std::abs(idealPixelScale(*scene.camera, out.centre_px).determinant()));
-    if (!(scale > 1e-3)) return std::nullopt;
-    out.sensor_radius_px = out.max_radius_px / scale;
-  }
-  return out;
-}
-
-std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const BoardScene& scene) {
-  std::vector<CircleImage> circles;
-  for (int i = 0; i < scene.board.pointCount(); ++i) {
-    std::optional<CircleImage> circle = imageOfCircle(ideal_from_board, scene, i);
-    if (!circle) continue;
-    const double r = circle->sensor_radius_px;
-    const Eigen::Vector2d& c = circle->sensor_centre_px;
-    if (c.x() < -r || c.y() < -r || c.x() > scene.resolution_px.width_px + r ||
-        c.y() > scene.resolution_px.height_px + r)
-      continue;
-    circles.push_back(*circle);
-  }
-  return circles;
-}
-
-bool insideImage(const CircleImage& circle, Resolution resolution_px) {
-  const double r = circle.sensor_radius_px;
-  const Eigen::Vector2d& c = circle.sensor_centre_px;
-  return c.x() >= r && c.y() >= r && c.x() <= resolution_px.width_px - 1 - r &&
-         c.y() <= resolution_px.height_px - 1 - r;
-}
-
 double boardSpeed_px_s(const BoardMotion& motion, const BoardScene& scene) {
-  const std::vector<CircleImage> circles = projectBoard(motion.ideal_from_board, scene);
+  const std::vector<OutlineImage> outlines = projectBoard(motion.ideal_from_board, scene);
   double sum = 0.0;
-  for (const CircleImage& circle : circles) {
-    const double sensor_scale = circle.sensor_radius_px / circle.max_radius_px;
-    sum += motion.velocityAt(circle.centre_px).norm() * sensor_scale;
-  }
-  return circles.empty() ? 0.0 : sum / static_cast<double>(circles.size());
+  for (const OutlineImage& outline : outlines)
+    sum += motion.velocityAt(outline.centre_px).norm() / outline.scale();
+  return outlines.empty() ? 0.0 : sum / static_cast<double>(outlines.size());
 }
 
 std::vector<int> circlesExpected(const BoardMotion& motion, const BoardScene& scene, double half_window_s) {
   constexpr double kMinTravel_px = 1.2;  // an edge that stays within a pixel fires few events or none
   std::vector<int> expected;
-  for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene)) {
-    const double sensor_scale = circle.sensor_radius_px / circle.max_radius_px;
-    const double travel_px = motion.velocityAt(circle.centre_px).norm() * sensor_scale * 2.0 * half_window_s;
-    if (insideImage(circle, scene.resolution_px) && travel_px > kMinTravel_px)
-      expected.push_back(circle.circle);
+  for (int index = 0; index < scene.board.pointCount(); ++index) {
+    const std::optional<PointImage> point = imageOfPoint(motion.ideal_from_board, scene, index);
+    if (!point || !insideImage(*point, scene.resolution_px)) continue;
+    const Eigen::Vector2d travel_px =
+        2.0 * half_window_s / point->scale * motion.velocityAt(point->centre_px);
+    // Of a corner: of one of its lines, both of whose edges are visible.
+    const auto moves = [&](std::size_t arm) {
+      return point->shown[arm] && point->shown[arm + 1] &&
+             std::abs(point->outlines[arm].normal.dot(travel_px)) > kMinTravel_px;
+    };
+    const bool expects = point->is_corner ? moves(0) || moves(2) : travel_px.norm() > kMinTravel_px;
+    if (expects) expected.push_back(index);
   }
   return expected;
 }

@@ -3,6 +3,7 @@
 // the bursts.
 #pragma once
 
+#include "core/frontend/board_outline.h"
 #include "core/frontend/board_scene.h"
 #include "core/frontend/burst_window.h"
 #include "core/frontend/detection_options.h"
@@ -62,38 +63,6 @@ BoardMotion predicted(const BoardMotion& motion, std::int64_t time_ns);
 // Homography after a small plane flow: H <- (I + E) H.
 Eigen::Matrix3d warped(const Eigen::Matrix3d& ideal_from_board, const ImageFrame& frame,
                        const PlaneFlow& shift_px);
-
-// Image of one circle: {q : (q - centre)^T shape (q - centre) = 1}, in ideal pixels.
-struct CircleImage {
-  int circle = 0;
-  Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d shape = Eigen::Matrix2d::Identity();
-  double max_radius_px = 0.0;
-  Eigen::Vector2d sensor_centre_px = Eigen::Vector2d::Zero();  // in the sensor's own pixels
-  double sensor_radius_px = 0.0;
-};
-std::optional<CircleImage> imageOfCircle(const Eigen::Matrix3d& ideal_from_board, const BoardScene& scene,
-                                         int circle);
-
-// Circles that touch the image.
-std::vector<CircleImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, const BoardScene& scene);
-
-// True if the whole circle is in the image.
-bool insideImage(const CircleImage& circle, Resolution resolution_px);
-
-// A burst compared with a projected circle.
-struct EdgeDistance {
-  double distance_px;      // outwards positive, ideal pixels
-  Eigen::Vector2d normal;  // outwards, unit
-};
-inline EdgeDistance distanceToEdge(const CircleImage& circle, const Eigen::Vector2d& ideal_pixel) {
-  const Eigen::Vector2d from_centre = ideal_pixel - circle.centre_px;
-  const Eigen::Vector2d gradient = circle.shape * from_centre;
-  const double slope = gradient.norm();
-  if (slope < 1e-12) return {-circle.max_radius_px, Eigen::Vector2d::UnitX()};
-  const double level = std::sqrt(std::max(from_centre.dot(gradient), 1e-12));
-  return {level * (level - 1.0) / slope, gradient / slope};
-}
 
 // Mean speed of the board's circles in the image, in the sensor's pixels.
 double boardSpeed_px_s(const BoardMotion& motion, const BoardScene& scene);

@@ -1,10 +1,9 @@
-// The joint fit of all circles in a window. Bursts are summed by circle and sector of its outline: within
+// The joint fit of all outlines in a window. Bursts are summed by outline and sector of it: within
 // a sector the normals agree to a few degrees, so the normal equations (25 unknowns) are built from a few
 // hundred sectors instead of thousands of bursts. Gradients use every burst's own normal, so the optimum is
 // unchanged.
 #include "core/frontend/board_motion.h"
 
-#include "core/frontend/circle_measurement.h"
 #include "core/numerics/robust.h"
 
 #include <Eigen/Cholesky>
@@ -65,14 +64,14 @@ void addPriors(const NormalVector& sigmas, const NormalVector& from_prior, doubl
   equations.vector -= weights.cwiseProduct(from_prior);
 }
 
-// One circle and its motion: the field to first order around its centre.
-struct CircleMotion {
-  CircleImage circle;
+// One outline and its motion: the field to first order around its centre.
+struct OutlineMotion {
+  OutlineImage outline;
   Eigen::Vector2d velocity, acceleration;
   Eigen::Matrix2d velocity_gradient, acceleration_gradient;  // per px
 
-  CircleMotion(const CircleImage& projected, const BoardMotion& motion)
-      : circle(projected),
+  OutlineMotion(const OutlineImage& projected, const BoardMotion& motion)
+      : outline(projected),
         velocity(motion.velocityAt(projected.centre_px)),
         acceleration(motion.accelerationAt(projected.centre_px)),
         velocity_gradient(motion.frame.gradient(motion.velocity_px_s, projected.centre_px)),
@@ -80,29 +79,32 @@ struct CircleMotion {
 };
 
 // Bursts that may be near the circle's edge at any time of the fit.
-void gatherPoints(const BurstWindow& window, const CircleMotion& moving, double half_window_s,
+void gatherPoints(const BurstWindow& window, const OutlineMotion& moving, double half_window_s,
                   double slack_px, std::vector<FitPoint>& points) {
   points.clear();
-  const CircleImage& circle = moving.circle;
+  const OutlineImage& outline = moving.outline;
   const double speed = moving.velocity.norm() + 0.5 * half_window_s * moving.acceleration.norm();
-  const double sensor_scale = circle.sensor_radius_px / circle.max_radius_px;
-  const double reach = circle.sensor_radius_px + slack_px + speed * half_window_s * sensor_scale;
-  const Eigen::Vector2d& middle = circle.sensor_centre_px;
-  window.visitBox(
-      middle.x() - reach, middle.x() + reach, middle.y() - reach, middle.y() + reach, [&](auto i) {
-        const WindowBurst& burst = window.bursts()[i];
-        const double t = burst.time_s;
-        if (std::abs(t) > half_window_s) return;
-        const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
-        const Eigen::Vector2d at_middle = pixel - t * (moving.velocity + 0.5 * t * moving.acceleration);
-        const EdgeDistance edge = distanceToEdge(circle, at_middle);
-        const double scale = burst.stretch.across(edge.normal);
-        if (!(std::abs(edge.distance_px) < slack_px * scale)) return;
-        points.push_back({pixel.x(), pixel.y(), t, 1.0 / scale, burst.events, burst.lead});
-      });
+  const Eigen::Vector2d reach =
+      outline.sensor_reach_px.array() + slack_px + speed * half_window_s / outline.scale();
+  const Eigen::Vector2d& middle = outline.sensor_centre_px;
+  OutlineImage longer = outline;  // the ends of an edge may be as far from their places as its bursts
+  if (outline.isStraight()) longer.max_radius_px += slack_px * outline.scale();
+  window.visitBox(middle.x() - reach.x(), middle.x() + reach.x(), middle.y() - reach.y(),
+                  middle.y() + reach.y(), [&](auto i) {
+                    const WindowBurst& burst = window.bursts()[i];
+                    const double t = burst.time_s;
+                    if (std::abs(t) > half_window_s) return;
+                    const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
+                    const Eigen::Vector2d at_middle =
+                        pixel - t * (moving.velocity + 0.5 * t * moving.acceleration);
+                    const EdgeDistance edge = distanceToEdge(longer, at_middle);
+                    const double scale = burst.stretch.across(edge.normal);
+                    if (!(std::abs(edge.distance_px) < slack_px * scale)) return;
+                    points.push_back({pixel.x(), pixel.y(), t, 1.0 / scale, burst.events, burst.lead});
+                  });
 }
 
-void sumSectors(const CircleMotion& moving, const std::vector<FitPoint>& points, const BoardMotion& motion,
+void sumSectors(const OutlineMotion& moving, const std::vector<FitPoint>& points, const BoardMotion& motion,
                 double gate_px, const TrackingOptions& options,
                 std::array<SectorSums, kOutlineSectors>& sectors, NormalEquations& equations) {
   const double inverse_noise2 = 1.0 / (options.robust_scale_px * options.robust_scale_px);
@@ -110,9 +112,9 @@ void sumSectors(const CircleMotion& moving, const std::vector<FitPoint>& points,
     const Eigen::Vector2d pixel(point.x, point.y);
     const double t = point.t;
     Eigen::Vector2d at_middle = pixel - t * (moving.velocity + 0.5 * t * moving.acceleration);
-    const Eigen::Vector2d beside = at_middle - moving.circle.centre_px;
+    const Eigen::Vector2d beside = at_middle - moving.outline.centre_px;
     at_middle -= t * (moving.velocity_gradient * beside + 0.5 * t * (moving.acceleration_gradient * beside));
-    const EdgeDistance edge = distanceToEdge(moving.circle, at_middle);
+    const EdgeDistance edge = distanceToEdge(moving.outline, at_middle);
     const double r = edge.distance_px * point.inverse_scale - motion.radius_offset_px;
     if (!(std::abs(r) < gate_px)) continue;
     const Eigen::Vector2d velocity_then = moving.velocity + t * moving.acceleration;
@@ -121,7 +123,7 @@ void sumSectors(const CircleMotion& moving, const std::vector<FitPoint>& points,
         crossingWeight(leads, point.events, motion.typical_events, options) / (1.0 + r * r * inverse_noise2);
     if (leads > kSquare) equations.square_events.push_back(point.events);
     if (w <= 0.0) continue;
-    SectorSums& sums = sectors[outlineSector(edge.normal)];
+    SectorSums& sums = sectors[sectorOf(moving.outline, edge.normal, at_middle)];
     // Rows carry 1 / scale; it is folded into the normal.
     const Eigen::Vector2d n = edge.normal * point.inverse_scale;
     double wt = w;
@@ -184,13 +186,13 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
   NormalVector from_prior = NormalVector::Zero();
   from_prior.segment<kFlowTerms>(2 * kFlowTerms) = motion.acceleration_px_s2;
   const double half_window_s = fitHalfWindow_s(boardSpeed_px_s(motion, scene), options);
-  std::vector<std::vector<FitPoint>> points(static_cast<std::size_t>(scene.board.pointCount()));
+  std::vector<std::vector<FitPoint>> points(static_cast<std::size_t>(scene.outlineCount()));
   double gate_px = first_gate_px;
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     NormalEquations equations;
-    for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene)) {
-      const CircleMotion moving(circle, motion);
-      std::vector<FitPoint>& near = points[static_cast<std::size_t>(circle.circle)];
+    for (const OutlineImage& outline : projectBoard(motion.ideal_from_board, scene)) {
+      const OutlineMotion moving(outline, motion);
+      std::vector<FitPoint>& near = points[static_cast<std::size_t>(outline.index)];
       if (iteration == 0) gatherPoints(window, moving, half_window_s, 2.0 * first_gate_px, near);
       std::array<SectorSums, kOutlineSectors> sectors;
       sumSectors(moving, near, motion, gate_px, options, sectors, equations);

@@ -39,7 +39,15 @@ constexpr double kNearlyBest = 0.8;
 // Tolerance of the board's axes for equal length (logarithm of the ratio) and perpendicularity (cosine).
 constexpr double kAxesTolerance = 0.2;
 
-// The board's two axes in the camera's view must be about equally long and perpendicular.
+MovingPoint toIdeal(const MovingCircle& circle, const std::optional<CameraIntrinsics>& camera) {
+  if (!camera) return {circle.centre_px, circle.velocity_px_s};
+  const std::optional<Eigen::Vector2d> ideal = idealPixel(*camera, circle.centre_px);
+  if (!ideal) return {Eigen::Vector2d::Constant(NAN), Eigen::Vector2d::Zero()};
+  return {*ideal, idealPixelScale(*camera, *ideal) * circle.velocity_px_s};
+}
+
+}  // namespace
+
 bool looksSquare(const Eigen::Matrix3d& ideal_from_board, const CameraIntrinsics& camera) {
   Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
   k.diagonal().head<2>() = idealFocalLength_px(camera);
@@ -50,14 +58,6 @@ bool looksSquare(const Eigen::Matrix3d& ideal_from_board, const CameraIntrinsics
          std::abs(axes.col(0).dot(axes.col(1))) < kAxesTolerance * x * y;
 }
 
-MovingPoint toIdeal(const MovingCircle& circle, const std::optional<CameraIntrinsics>& camera) {
-  if (!camera) return {circle.centre_px, circle.velocity_px_s};
-  const std::optional<Eigen::Vector2d> ideal = idealPixel(*camera, circle.centre_px);
-  if (!ideal) return {Eigen::Vector2d::Constant(NAN), Eigen::Vector2d::Zero()};
-  return {*ideal, idealPixelScale(*camera, *ideal) * circle.velocity_px_s};
-}
-
-// Homography with the circles that agree; drops the others from the placement.
 std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_t>>& placed,
                                            const std::vector<MovingPoint>& ideal, const Board& board,
                                            const GridOptions& options) {
@@ -86,6 +86,8 @@ std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_
     placed.erase(placed.begin() + static_cast<std::ptrdiff_t>(worst));
   }
 }
+
+namespace {
 
 // The board's circle whose place is nearest, if the place is on the board.
 std::optional<int> nearestCircle(const Board& board, const Eigen::Vector2d& place_m) {

@@ -32,6 +32,14 @@ std::vector<BoardPlacement> placeOnBoard(const CircleLattice& lattice,
                                          const std::vector<MovingCircle>& circles, const BoardScene& scene,
                                          std::int64_t time_ns, const GridOptions& options);
 
+// Homography with the points that agree; drops the others from the placement.
+std::optional<Eigen::Matrix3d> fitAgreeing(std::vector<std::pair<int, std::size_t>>& placed,
+                                           const std::vector<MovingPoint>& ideal, const Board& board,
+                                           const GridOptions& options);
+
+// True if the board's two axes in the camera's view are about equally long and perpendicular.
+bool looksSquare(const Eigen::Matrix3d& ideal_from_board, const CameraIntrinsics& camera);
+
 // Motions of the board plane that map the board's lattice onto itself, shifted or rotated, so that at least
 // `min_overlap` of its circles coincide with circles: placements that may be confused. The identity is the
 // first. Motions that differ by a symmetry of the whole lattice are listed once.

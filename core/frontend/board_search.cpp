@@ -41,6 +41,14 @@ struct Judged {
   int value() const { return measured - missing; }
 };
 
+Judged judgeFitted(const BoardMotion& motion, const BurstWindow& window, const BoardScene& scene,
+                   double half_window_s, const FrontEndOptions& options) {
+  const auto circles = measureCircles(window, motion, scene, {half_window_s}, options.tracking);
+  const auto measured = static_cast<int>(circles.size());
+  const int expected = expectedCircles(motion, scene, half_window_s);
+  return Judged{motion, measured, std::max(expected - measured, 0)};
+}
+
 std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& window,
                             const BoardScene& scene, double half_window_s, const FrontEndOptions& options) {
   const std::optional<BoardMotion> rough = fitBoardMotion(
@@ -49,10 +57,7 @@ std::optional<Judged> judge(const BoardPlacement& placement, const BurstWindow& 
   const std::optional<BoardMotion> motion =
       fitBoardMotion(window, *rough, scene, options.tracking.first_gate_px, options.tracking);
   if (!motion) return std::nullopt;
-  const auto circles = measureCircles(window, *motion, scene, {half_window_s}, options.tracking);
-  const auto measured = static_cast<int>(circles.size());
-  const int expected = expectedCircles(*motion, scene, half_window_s);
-  return Judged{*motion, measured, std::max(expected - measured, 0)};
+  return judgeFitted(*motion, window, scene, half_window_s, options);
 }
 
 // Placements on the same circles: the first one, and the motions of the board's plane from each of them to
@@ -101,31 +106,40 @@ std::vector<PlacementGroup> groupedByCircles(const std::vector<BoardPlacement>& 
   return groups;
 }
 
+// The placement of the best rival. Its circles are measured; its corners are not yet.
+Judged shiftedTo(const PlacementScore& rival, const Judged& judged, const BurstWindow& window,
+                 const BoardScene& scene, double half_window_s, const FrontEndOptions& options) {
+  const BoardMotion motion = shifted(judged.motion, rival.shift);
+  if (scene.edges) return judgeFitted(motion, window, scene, half_window_s, options);
+  return Judged{motion, rival.measured, rival.missing};
+}
+
 WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene,
                               const FrontEndOptions& options, BoardSearch& search) {
   std::optional<Judged> best;
   for (const PlacementGroup& group : groupedByCircles(search.placements, scene.board)) {
     std::optional<Judged> judged = judge(*group.first, window, scene, search.half_window_s, options);
     if (!judged) continue;
-    if (judged->measured < scene.board.pointCount() && group.shifts.size() > 1) {
+    const bool undecided = scene.edges || judged->measured < scene.board.pointCount();
+    if (undecided && group.shifts.size() > 1) {
       const PlacementScore first =
           rivalPlacements(judged->motion, group.shifts, window, scene, search.half_window_s, options.tracking)
               .front();
-      judged = Judged{shifted(judged->motion, first.shift), first.measured, first.missing};
+      judged = shiftedTo(first, *judged, window, scene, search.half_window_s, options);
     }
     if (!best || judged->value() > best->value()) best = judged;
-    if (best->measured == scene.board.pointCount()) break;
+    if (!scene.edges && best->measured == scene.board.pointCount()) break;
   }
   if (!best) return WindowOutcome::RefinementFailed;
   const int count = scene.board.pointCount();
-  if (best->measured < count) {
+  if (scene.edges || best->measured < count) {
     const std::vector<PlacementScore> rivals =
-        rivalPlacements(best->motion, latticeShifts(scene.board, options.grid.min_rival_overlap), window,
-                        scene, search.half_window_s, options.tracking);
+        rivalPlacements(best->motion, rivalShifts(scene, options.grid.min_rival_overlap), window, scene,
+                        search.half_window_s, options.tracking);
     const PlacementScore& first = rivals.front();
-    best = Judged{shifted(best->motion, first.shift), first.measured, first.missing};
-    if (best->measured < count && rivals.size() > 1 &&
-        rivals[1].value() > best->value() - options.grid.ambiguity_margin) {
+    best = shiftedTo(first, *best, window, scene, search.half_window_s, options);
+    if ((scene.edges || best->measured < count) && rivals.size() > 1 &&
+        rivals[1].value() > first.value() - options.grid.ambiguity_margin) {
       return WindowOutcome::Ambiguous;
     }
   }
@@ -142,12 +156,28 @@ void fail(BoardSearch& search, SearchStage stage, WindowOutcome outcome) {
   search.outcome = outcome;
 }
 
-void searchWindow(const BurstWindow& window, double speed_px_s, const BoardScene& scene,
-                  const FrontEndOptions& options, BoardSearch& search) {
+// Squares: saddles of both reaches; the one with the larger lattice is kept.
+void searchCorners(const BurstWindow& window, const BoardScene& scene, const FrontEndOptions& options,
+                   BoardSearch& search) {
+  const std::vector<MovedCrossing> crossings = crossingsAtMiddle(window, options.normal_flow);
+  for (const double reach_px : {options.saddle.short_reach_px, options.saddle.long_reach_px}) {
+    std::vector<SaddleCandidate> saddles =
+        voteForSaddles(crossings, window.resolution_px(), reach_px, options.saddle);
+    CornerLattice corners = findCornerLattice(saddles, scene.board, options.grid);
+    if (!search.saddles.empty() && corners.nodes.size() <= search.corners.nodes.size()) continue;
+    search.saddles = std::move(saddles);
+    search.corners = std::move(corners);
+  }
+  if (static_cast<int>(search.saddles.size()) < options.grid.min_circles)
+    return fail(search, SearchStage::Circles, WindowOutcome::TooFewCircles);
+  if (search.corners.nodes.empty()) return fail(search, SearchStage::Lattice, WindowOutcome::NoLattice);
+  search.placements =
+      placeOnBoard(search.corners, search.saddles, crossings, scene, window.middle_ns(), options.grid);
+}
+
+void searchCircles(const BurstWindow& window, double speed_px_s, const BoardScene& scene,
+                   const FrontEndOptions& options, BoardSearch& search) {
   const GridOptions& grid = options.grid;
-  search.bursts = static_cast<int>(window.bursts().size());
-  if (search.bursts < options.detection.min_window_bursts)
-    return fail(search, SearchStage::Bursts, WindowOutcome::TooFewEvents);
   search.candidates = findCandidates(window, search.source, options);
   search.circles = fitMovingCircles(window, search.candidates, speed_px_s, options.moving_circle);
   if (static_cast<int>(search.circles.size()) < grid.min_circles)
@@ -158,6 +188,18 @@ void searchWindow(const BurstWindow& window, double speed_px_s, const BoardScene
   if (static_cast<int>(search.lattice.size()) < grid.min_circles)
     return fail(search, SearchStage::Lattice, WindowOutcome::TooFewInGrid);
   search.placements = placeOnBoard(search.lattice, search.circles, scene, window.middle_ns(), grid);
+}
+
+void searchWindow(const BurstWindow& window, double speed_px_s, const BoardScene& scene,
+                  const FrontEndOptions& options, BoardSearch& search) {
+  search.bursts = static_cast<int>(window.bursts().size());
+  if (search.bursts < options.detection.min_window_bursts)
+    return fail(search, SearchStage::Bursts, WindowOutcome::TooFewEvents);
+  if (scene.edges)
+    searchCorners(window, scene, options, search);
+  else
+    searchCircles(window, speed_px_s, scene, options, search);
+  if (search.ended != SearchStage::Bursts) return;
   if (search.placements.empty()) return fail(search, SearchStage::Placement, WindowOutcome::NoLattice);
   search.outcome = choosePlacement(window, scene, options, search);
   search.ended = search.motion ? SearchStage::Done : SearchStage::JointFit;
@@ -215,7 +257,7 @@ std::vector<BoardSearch> searchBoard(const BurstHistory& history, std::int64_t m
   Searcher searcher(history, middle_ns, scene, options);
   const CandidateSource first = options.detection.method;
   std::vector<BoardSearch> searches = {searcher.searchBy(first)};
-  if (!searches.front().motion && options.detection.try_both)
+  if (!searches.front().motion && options.detection.try_both && !scene.edges)
     searches.push_back(searcher.searchBy(otherThan(first)));
   return searches;
 }

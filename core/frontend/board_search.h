@@ -8,6 +8,7 @@
 #include "core/frontend/board_scene.h"
 #include "core/frontend/circle_candidate.h"
 #include "core/frontend/circle_pairs.h"
+#include "core/frontend/corner_lattice.h"
 #include "core/frontend/detection_options.h"
 
 #include <optional>
@@ -28,6 +29,8 @@ struct BoardSearch {
   std::vector<CircleCandidate> candidates;
   std::vector<MovingCircle> circles;
   CircleLattice lattice;
+  std::vector<SaddleCandidate> saddles;  // of a board of squares, instead of candidates and circles
+  CornerLattice corners;                 // and instead of their lattice
   std::vector<BoardPlacement> placements;
   std::optional<BoardMotion> motion;
 };

@@ -31,7 +31,7 @@ BoardTracker::BoardTracker(const Board& board, Resolution resolution_px,
       last_search_ns_(kLongAgo),
       search_interval_s_(options.detection.search_interval_s),
       tracked_until_ns_(kLongAgo),
-      placement_watch_(board, options.grid) {}
+      placement_watch_(scene_, options.grid) {}
 
 void BoardTracker::add(EventSpan events) {
   if (events.empty()) return;
@@ -175,7 +175,7 @@ void BoardTracker::trackBackwards(const WindowSlot& from, BoardMotion motion) {
 
 WindowTrace BoardTracker::track(const WindowSlot& slot, const BoardMotion& last) {
   WindowTrace trace = trackWindow({history_, scene_, options_, start_ns_}, slot, last, window_);
-  if (trace.held() && held_windows_++ % options_.extent.every_windows == 0)
+  if (trace.held() && !scene_.edges && held_windows_++ % options_.extent.every_windows == 0)
     judgeExtent(window_, trace, scene_, options_, observations_.extent);
   if (observer_) observer_->windowTracked(window_, trace);
   return trace;

@@ -257,11 +257,34 @@ constexpr std::tuple kNormalFlowFields{
           "Largest angle between the directions of two paired arcs, and to the line that joins them."},
     Field{"window_travel_px", &NormalFlowOptions::window_travel_px, 3.5, within(0.5, 20.0), "px",
           "Distance that edges travel in a searched window, approximately."}};
+constexpr std::tuple kSaddleFields{
+    Field{"short_reach_px", &SaddleOptions::short_reach_px, 4.5, within(2.0, 30.0), "px",
+          "Largest distance of votes from a corner, for small squares."},
+    Field{"long_reach_px", &SaddleOptions::long_reach_px, 8.0, within(2.0, 60.0), "px",
+          "Largest distance of votes from a corner, for large squares."},
+    Field{"min_votes", &SaddleOptions::min_votes, 5.0, within(1.0, 1000.0), "",
+          "Smallest sum of agreeing votes for a corner."},
+    Field{"min_agreement", &SaddleOptions::min_agreement, 0.5, within(0.0, 1.0), "",
+          "Smallest share of agreeing votes for a corner."},
+    Field{"min_side", &SaddleOptions::min_side, 2, within(1, 100), "",
+          "Smallest number of votes on either side of a corner, along one of its lines."},
+    Field{"max_candidates", &SaddleOptions::max_candidates, 1500, within(10, 10000), "",
+          "Largest number of corners in a search, best first."}};
+constexpr auto kSaddleDefaults = defaultsOf<SaddleOptions, kSaddleFields>();
+
 constexpr auto kNormalFlowDefaults = defaultsOf<NormalFlowOptions, kNormalFlowFields>();
 
 }  // namespace
 
 NormalFlowOptions::NormalFlowOptions() : NormalFlowOptions(kNormalFlowDefaults) {}
+
+SaddleOptions::SaddleOptions() : SaddleOptions(kSaddleDefaults) {}
+
+const OptionTable<SaddleOptions>& SaddleOptions::table() {
+  static const OptionTable<SaddleOptions> table(
+      kSaddleFields, Ordered{&SaddleOptions::short_reach_px, &SaddleOptions::long_reach_px});
+  return table;
+}
 
 const OptionTable<NormalFlowOptions>& NormalFlowOptions::table() {
   static const OptionTable<NormalFlowOptions> table(kNormalFlowFields);

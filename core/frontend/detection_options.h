@@ -158,6 +158,21 @@ struct NormalFlowOptions {
   static const OptionTable<NormalFlowOptions>& table();
 };
 
+// Corners of boards of squares in a search (docs/maths.md, 5.8).
+struct SaddleOptions {
+  double short_reach_px;
+  double long_reach_px;
+  double min_votes;
+  double min_agreement;
+  int min_side;
+  int max_candidates;
+
+  SaddleOptions();  // the defaults
+  constexpr explicit SaddleOptions(NoDefaults) {}
+  bool operator==(const SaddleOptions&) const = default;
+  static const OptionTable<SaddleOptions>& table();
+};
+
 // All options of the front end, one struct per stage.
 struct FrontEndOptions {
   DetectionOptions detection;
@@ -166,6 +181,7 @@ struct FrontEndOptions {
   NormalFlowOptions normal_flow;
   MovingCircleOptions moving_circle;
   GridOptions grid;
+  SaddleOptions saddle;
   TrackingOptions tracking;
   ExtentOptions extent;
   bool operator==(const FrontEndOptions&) const = default;

@@ -2,6 +2,7 @@
 
 #include "core/frontend/board_placement.h"
 #include "core/frontend/circle_measurement.h"
+#include "core/frontend/pattern_agreement.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -91,6 +92,7 @@ std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid,
                                             const std::vector<Eigen::Matrix3d>& shifts,
                                             const BurstWindow& window, const BoardScene& scene,
                                             double half_window_s, const TrackingOptions& options) {
+  if (scene.edges) return rivalPatterns(laid, shifts, window, scene, half_window_s, options);
   LatticeAround lattice(laid, shifts, scene);
   lattice.look(window, half_window_s, options);
   std::vector<PlacementScore> rivals;
@@ -121,8 +123,13 @@ std::vector<int> renumbering(const Board& board, const Eigen::Matrix3d& shift) {
   return rival_of;
 }
 
-PlacementWatch::PlacementWatch(const Board& board, const GridOptions& options)
-    : options_(options), shifts_(latticeShifts(board, options.min_rival_overlap)) {}
+std::vector<Eigen::Matrix3d> rivalShifts(const BoardScene& scene, double min_overlap) {
+  return scene.edges ? patternShifts(scene.board, *scene.edges, min_overlap)
+                     : latticeShifts(scene.board, min_overlap);
+}
+
+PlacementWatch::PlacementWatch(const BoardScene& scene, const GridOptions& options)
+    : options_(options), shifts_(rivalShifts(scene, options.min_rival_overlap)) {}
 
 void PlacementWatch::begin() {
   contradicting_ = agreeing_ = wait_ = 0;
@@ -131,7 +138,8 @@ void PlacementWatch::begin() {
 
 std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, const WindowTrace& trace,
                                                     const BoardScene& scene, const TrackingOptions& options) {
-  if (trace.report.circles + options_.ambiguity_margin >= scene.board.pointCount()) {
+  // Every circle counts; corners are the same in rivals that differ only in the bits of tags.
+  if (!scene.edges && trace.report.circles + options_.ambiguity_margin >= scene.board.pointCount()) {
     agreed(options_.contradicting_looks);  // immediately: no rival explains more
     return std::nullopt;
   }

@@ -30,6 +30,9 @@ std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid,
                                             const BurstWindow& window, const BoardScene& scene,
                                             double half_window_s, const TrackingOptions& options);
 
+// Motions of the board's plane to all rivals (latticeShifts, patternShifts).
+std::vector<Eigen::Matrix3d> rivalShifts(const BoardScene& scene, double min_overlap);
+
 // The same board with a rival's placement.
 BoardMotion shifted(const BoardMotion& motion, const Eigen::Matrix3d& shift);
 
@@ -40,7 +43,7 @@ std::vector<int> renumbering(const Board& board, const Eigen::Matrix3d& shift);
 // many circles), and occasionally after the visible circles have excluded all of them.
 class PlacementWatch {
  public:
-  PlacementWatch(const Board& board, const GridOptions& options);
+  PlacementWatch(const BoardScene& scene, const GridOptions& options);
 
   void begin();  // after a new detection of the board: all placements are open
   bool isDue() const { return wait_ <= 1; }

@@ -64,16 +64,26 @@ std::vector<Eigen::Vector2d> ellipse(const Eigen::Vector2d& centre, const Eigen:
 
 void paintBoard(DrawingCanvas& canvas, const BoardMotion& motion, const BoardScene& scene, Colour colour,
                 int thickness, const DrawingStyle& style) {
-  for (const auto& circle : projectBoard(motion.ideal_from_board, scene)) {
-    canvas.outline(ellipse(circle.centre_px, circle.shape.inverse(), 1.0, scene), colour, thickness);
-    const Eigen::Vector2d moved = circle.centre_px + style.arrow_s * motion.velocityAt(circle.centre_px);
-    canvas.arrow(toSensor(circle.centre_px, scene), toSensor(moved, scene), kArrow);
+  for (const OutlineImage& outline : projectBoard(motion.ideal_from_board, scene)) {
+    std::vector<Eigen::Vector2d> points = outlinePoints(outline);
+    for (Eigen::Vector2d& point : points) point = toSensor(point, scene);
+    if (outline.isStraight())
+      canvas.line(points[0], points[1], colour, thickness);
+    else
+      canvas.outline(points, colour, thickness);
+  }
+  for (int index = 0; index < scene.board.pointCount(); ++index) {
+    const std::optional<PointImage> point = imageOfPoint(motion.ideal_from_board, scene, index);
+    if (!point) continue;
+    const Eigen::Vector2d moved = point->centre_px + style.arrow_s * motion.velocityAt(point->centre_px);
+    canvas.arrow(toSensor(point->centre_px, scene), toSensor(moved, scene), kArrow);
   }
 }
 
 void paintBoardNumbers(DrawingCanvas& canvas, const BoardMotion& motion, const BoardScene& scene) {
-  for (const auto& circle : projectBoard(motion.ideal_from_board, scene)) {
-    canvas.label(toSensor(circle.centre_px, scene), std::to_string(circle.circle), kCentre);
+  for (int index = 0; index < scene.board.pointCount(); ++index) {
+    const std::optional<PointImage> point = imageOfPoint(motion.ideal_from_board, scene, index);
+    if (point) canvas.label(toSensor(point->centre_px, scene), std::to_string(index), kCentre);
   }
 }
 
@@ -100,6 +110,8 @@ void paintArcs(DrawingCanvas& canvas, const NormalFlowStages& arcs, const BoardS
 }
 
 void paintMoving(DrawingCanvas& canvas, const BoardSearch& search, const DrawingStyle& style) {
+  constexpr double kSaddleRadius_px = 1.5;
+  for (const SaddleCandidate& saddle : search.saddles) canvas.circle(saddle.at_px, kSaddleRadius_px, kMoving);
   for (const MovingCircle& circle : search.circles) {
     canvas.circle(circle.centre_px, circle.radius_px, kMoving);
     canvas.arrow(circle.centre_px, circle.centre_px + style.arrow_s * circle.velocity_px_s, kArrow);
@@ -107,6 +119,12 @@ void paintMoving(DrawingCanvas& canvas, const BoardSearch& search, const Drawing
 }
 
 void paintLattice(DrawingCanvas& canvas, const BoardSearch& search) {
+  for (const CornerNode& a : search.corners.nodes) {
+    for (const CornerNode& b : search.corners.nodes) {
+      const bool next = (b.i == a.i + 1 && b.j == a.j) || (b.i == a.i && b.j == a.j + 1);
+      if (next) canvas.line(search.saddles[a.saddle].at_px, search.saddles[b.saddle].at_px, kLattice);
+    }
+  }
   for (const LatticeNode& a : search.lattice) {
     for (const LatticeNode& b : search.lattice) {
       const bool next = (b.i == a.i + 1 && b.j == a.j) || (b.i == a.i && b.j == a.j + 1);

@@ -65,8 +65,11 @@ QPolygonF ellipse(const Eigen::Vector2d& centre, const Eigen::Matrix2d& covarian
 }
 
 void paintBoard(QPainter& painter, const BoardMotion& motion, const BoardScene& scene) {
-  for (const CircleImage& circle : projectBoard(motion.ideal_from_board, scene))
-    painter.drawPolygon(ellipse(circle.centre_px, circle.shape.inverse(), 1.0, scene));
+  for (const OutlineImage& outline : projectBoard(motion.ideal_from_board, scene)) {
+    QPolygonF polygon;
+    for (const Eigen::Vector2d& point : outlinePoints(outline)) polygon << toSensor(point, scene);
+    painter.drawPolygon(polygon);
+  }
 }
 
 // Measured ellipses of the circles, in the picture; corners have none.

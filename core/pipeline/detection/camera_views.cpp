@@ -43,21 +43,6 @@ class EventViews final : public CameraViews {
   BoardTracker tracker_;
 };
 
-// "calibrate the sensor's frames (stream /davis/image_raw)", which show boards that events cannot.
-std::string framesInstead(const Session& session, const SessionCamera& camera) {
-  std::string names;
-  try {
-    const std::unique_ptr<RecordingReader> reader =
-        openRecording(camera.recording.empty() ? session.recording : camera.recording);
-    for (const StreamInfo& stream : reader->streams())
-      if (stream.type == StreamType::Frames) names += (names.empty() ? "" : ", ") + stream.name;
-  } catch (const CalibrationError&) {
-    names.clear();  // the general advice is enough
-  }
-  return names.empty() ? "calibrate frames of the same sensor"
-                       : "calibrate the sensor's frames (stream " + names + ")";
-}
-
 }  // namespace
 
 std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewRequest& request) {
@@ -70,14 +55,6 @@ std::unique_ptr<CameraViews> cameraViews(const CameraBatch& first, const ViewReq
                    "Give the camera points from another program (points: FILE), or use another board");
   if (first.kind == CameraKind::Frames) return std::make_unique<FrameViews>(first, request);
   if (session.board_blinks) return std::make_unique<BlinkViews>(first, request);
-  if (!board.hasCircles())
-    throw badInput(
-        session.cameras[first.camera].name,
-        std::string("a moving event camera cannot detect a board of type ") + boardTypeName(board.type),
-        "Use a circle grid, " + framesInstead(session, session.cameras[first.camera]) +
-            ", or show this board on a flashing screen (create a page for it " +
-            howTo(HowTo::MakeFlashingPage) + "), " + howTo(HowTo::SayThatBoardFlashes) +
-            " and calibrate the camera " + howTo(HowTo::CalibrateLens));
   return std::make_unique<EventViews>(first, request);
 }
 

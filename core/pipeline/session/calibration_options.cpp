@@ -48,6 +48,7 @@ void forEachGroup(Options& all, Visitor&& visit) {
   visit("normal_flow", WithNormalFlow, "Circle candidates from normal flow", front_end.normal_flow);
   visit("moving_circle", WithEvents, "Fits of single moving circles", front_end.moving_circle);
   visit("grid", WithEvents, "Assignment of circles to the board", front_end.grid);
+  visit("saddle", WithEvents, "Corners of checkerboards and of boards of tags", front_end.saddle);
   visit("tracking", WithEvents, "Joint fits of all circles in a window, and tracking between windows",
         front_end.tracking);
   visit("extent", WithEvents, "Check of the board's number of rows and columns", front_end.extent);

@@ -112,7 +112,7 @@ struct MovingBoard {
 
   BoardScene scene() const { return {board, kDavis_px, std::nullopt}; }
 
-  CircleImage imageAt(int circle, double time_s) const {
+  OutlineImage imageAt(int circle, double time_s) const {
     return *imageOfCircle(homographyAt(time_s), scene(), circle);
   }
   Eigen::Vector2d velocityAt(int circle, double time_s) const {
@@ -146,11 +146,11 @@ inline std::vector<EdgeCrossing> burstsOf(const MovingBoard& moving, double half
   std::normal_distribution<double> normal;
   std::vector<EdgeCrossing> bursts;
   for (int i = 0; i < moving.board.pointCount(); ++i) {
-    std::vector<CircleImage> images;
+    std::vector<OutlineImage> images;
     for (int k = 0; k <= kSteps; ++k)
       images.push_back(moving.imageAt(i, half_window_s * (2.0 * k / kSteps - 1.0)));
     const Eigen::Vector2d velocity = moving.velocityAt(i, 0.0);
-    const CircleImage& middle = images[kSteps / 2];
+    const OutlineImage& middle = images[kSteps / 2];
     const double reach = middle.max_radius_px + velocity.norm() * half_window_s + 2.0;
     for (int y = static_cast<int>(middle.centre_px.y() - reach); y <= middle.centre_px.y() + reach; ++y) {
       for (int x = static_cast<int>(middle.centre_px.x() - reach); x <= middle.centre_px.x() + reach; ++x) {

@@ -43,7 +43,7 @@ void TestBoardMotion::imageOfCircle_holdsImagesOfItsPoints() {
   const MovingBoard moving;
   const Eigen::Matrix3d h = moving.homographyAt(0.0);
   for (int i = 0; i < moving.board.pointCount(); ++i) {
-    const CircleImage image = moving.imageAt(i, 0.0);
+    const OutlineImage image = moving.imageAt(i, 0.0);
     double largest_px = 0.0;
     for (int k = 0; k < 72; ++k) {
       const double angle = 2.0 * M_PI * k / 72;
@@ -80,7 +80,7 @@ void TestBoardMotion::sensorPixels_followDistortion() {
 }
 
 void TestBoardMotion::distanceToEdge_isThatOfTheCircle() {
-  CircleImage image;
+  OutlineImage image;
   image.centre_px = {100.0, 80.0};
   image.shape = Eigen::Matrix2d::Identity() / 81.0;
   image.max_radius_px = 9.0;
@@ -153,7 +153,7 @@ void TestBoardMotion::prediction_movesTheBoard() {
 }
 
 void TestBoardMotion::insideImage_wantsTheWholeCircle() {
-  CircleImage image;
+  OutlineImage image;
   image.sensor_radius_px = 5.0;
   image.sensor_centre_px = {6.0, 100.0};
   QVERIFY(insideImage(image, kDavis_px));

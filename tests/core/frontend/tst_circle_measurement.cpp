@@ -39,7 +39,7 @@ void TestCircleMeasurement::withoutNoise_centresAreExact() {
       moving, burstsOf(moving, kCircleMeasurementHalfWindow_s, 0.0, random), kCircleMeasurementHalfWindow_s);
   QCOMPARE(static_cast<int>(circles.size()), moving.board.pointCount());
   for (const CircleObservation& circle : circles) {
-    const CircleImage truth = moving.imageAt(circle.circle, circle.time_s);
+    const OutlineImage truth = moving.imageAt(circle.circle, circle.time_s);
     QVERIFY2((circle.centre_px - truth.centre_px).norm() < 0.02,
              qPrintable(QString::number((circle.centre_px - truth.centre_px).norm())));
     QVERIFY((circle.velocity_px_s - moving.velocityAt(circle.circle, circle.time_s)).norm() < 1.0);
@@ -91,7 +91,7 @@ void TestCircleMeasurement::circlesWithoutBursts_areLeftOut() {
   const std::set<int> hidden = {0, 17, 43};
   std::erase_if(bursts, [&](const EdgeCrossing& burst) {
     return std::any_of(hidden.begin(), hidden.end(), [&](int i) {
-      const CircleImage image = moving.imageAt(i, 0.0);
+      const OutlineImage image = moving.imageAt(i, 0.0);
       return (Eigen::Vector2d(burst.x_px, burst.y_px) - image.centre_px).norm() < image.max_radius_px + 3.0;
     });
   });

@@ -106,7 +106,7 @@ void TestStageDrawing::board_isDrawn() {
   const int factor = image.width_px / kDavis_px.width_px;
   const int bar = (image.height_px - factor * kDavis_px.height_px) / 2;
   for (int i = 0; i < MovingBoard().board.pointCount(); ++i) {
-    const CircleImage circle = MovingBoard().imageAt(i, 0.0);
+    const OutlineImage circle = MovingBoard().imageAt(i, 0.0);
     const Eigen::Vector2d side = circle.centre_px + Eigen::Vector2d(std::sqrt(1.0 / circle.shape(0, 0)), 0.0);
     int brightest = 0;
     for (int dy = -1; dy <= 1; ++dy) {

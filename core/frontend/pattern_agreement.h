@@ -1,0 +1,25 @@
+// How well the edges of a whole board of squares, the bits of its tags included, agree with the crossings of
+// a window: decides between placements that have the same corners.
+#pragma once
+
+#include "core/frontend/board_motion.h"
+#include "core/frontend/rival_placements.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace evical {
+
+// Scores of placements of a board of squares, best first, in the unit of circles: a placement that explains a
+// share of the crossings has measured that share of the points in view, and misses those that the crossings
+// contradict.
+std::vector<PlacementScore> rivalPatterns(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts,
+                                          const BurstWindow& window, const BoardScene& scene,
+                                          double half_window_s, const TrackingOptions& options);
+
+// Motions of the plane of a board of squares that map its squares onto squares so that at least `min_overlap`
+// of them coincide. The identity is the first; motions that leave the pattern unchanged are left out.
+std::vector<Eigen::Matrix3d> patternShifts(const Board& board, const BoardEdges& edges, double min_overlap);
+
+}  // namespace evical
