@@ -95,12 +95,11 @@ std::vector<int> circlesExpected(const BoardMotion& motion, const BoardScene& sc
     if (!point || !insideImage(*point, scene.resolution_px)) continue;
     const Eigen::Vector2d travel_px =
         2.0 * half_window_s / point->scale * motion.velocityAt(point->centre_px);
-    // Of a corner: of one of its lines, both of whose edges are visible.
     const auto moves = [&](std::size_t arm) {
-      return point->shown[arm] && point->shown[arm + 1] &&
-             std::abs(point->outlines[arm].normal.dot(travel_px)) > kMinTravel_px;
+      return point->shown[arm] && std::abs(point->outlines[arm].normal.dot(travel_px)) > kMinTravel_px;
     };
-    const bool expects = point->is_corner ? moves(0) || moves(2) : travel_px.norm() > kMinTravel_px;
+    const bool expects =
+        point->is_corner ? moves(0) || moves(1) || moves(2) || moves(3) : travel_px.norm() > kMinTravel_px;
     if (expects) expected.push_back(index);
   }
   return expected;

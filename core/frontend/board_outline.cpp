@@ -14,9 +14,11 @@ namespace evical {
 namespace {
 
 // Lengths in the sensor's pixels.
-constexpr double kCornerGap_px = 1.5;   // next to the end of an edge, the blur of the corner displaces bursts
-constexpr double kShortest_px = 1.5;    // of what remains of an edge
-constexpr double kMinRoom_px = 3.0;     // to the next parallel edge, which displaces bursts, too
+constexpr double kCornerGap_px = 1.5;  // next to the end of an edge, the blur of the corner displaces bursts
+constexpr double kShortest_px = 1.5;   // of what remains of an edge
+// To the next parallel edge, which displaces bursts, too. Light on narrow ink changes its darkness by a large
+// factor, and pixels see factors; on narrow paper it hardly matters.
+constexpr double kMinInk_px = 3.0, kMinPaper_px = 2.0;
 constexpr double kSmallestScale = 0.5;  // of ideal pixels per pixel
 constexpr double kSector_px = 8.0;      // along an edge
 
@@ -57,10 +59,11 @@ std::optional<OutlineImage> imageOfEdge(const Eigen::Matrix3d& h, const BoardSce
   OutlineImage out;
   out.normal = Eigen::Vector2d(-along.y(), along.x());
   if (out.normal.dot(to_paper) < 0.0) out.normal = -out.normal;
-  const double room_px = edge.room_m * out.normal.dot(to_paper);
-  if (room_px < kSmallestScale * kMinRoom_px) return std::nullopt;  // saves time: bits are many
+  const double px_per_m = out.normal.dot(to_paper);
+  const double room = std::min(edge.ink_m / kMinInk_px, edge.paper_m / kMinPaper_px) * px_per_m;
+  if (room < kSmallestScale) return std::nullopt;  // saves time: bits are many
   const std::optional<SensorPlace> place = sensorPlace(scene, 0.5 * (a + b));
-  if (!place || room_px < kMinRoom_px * place->scale) return std::nullopt;
+  if (!place || room < place->scale) return std::nullopt;
   const double begin_px = gap_from_px * place->scale, end_px = length_px - gap_to_px * place->scale;
   if (!(end_px - begin_px > kShortest_px * place->scale)) return std::nullopt;
   out.max_radius_px = 0.5 * (end_px - begin_px);

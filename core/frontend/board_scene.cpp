@@ -34,7 +34,7 @@ PrintedEdge armAt(const std::vector<PrintedEdge>& edges, const Eigen::Vector2d& 
       const Eigen::Vector2d &from_m = backwards ? edge.to_m : edge.from_m,
                             &to_m = backwards ? edge.from_m : edge.to_m;
       if ((from_m - corner_m).norm() > tolerance_m || (to_m - from_m).dot(direction) < tolerance_m) continue;
-      return {corner_m, 0.5 * (from_m + to_m), edge.paper, edge.room_m};
+      return {corner_m, 0.5 * (from_m + to_m), edge.paper, edge.ink_m, edge.paper_m};
     }
   }
   return {};  // of length 0: it has no image
@@ -43,16 +43,17 @@ PrintedEdge armAt(const std::vector<PrintedEdge>& edges, const Eigen::Vector2d& 
 }  // namespace
 
 EdgeMap::EdgeMap(const std::vector<PrintedEdge>& edges) {
-  constexpr double kCellsInRoom = 8.0;
+  constexpr double kCellsInRoom = 8.0, kCellsAcross = 512.0;
   low_m_.setConstant(std::numeric_limits<double>::infinity());
   high_m_ = -low_m_;
   double room_m = std::numeric_limits<double>::infinity();
   for (const PrintedEdge& edge : edges) {
     low_m_ = low_m_.cwiseMin(edge.from_m);
     high_m_ = high_m_.cwiseMax(edge.to_m);
-    room_m = std::min(room_m, edge.room_m);
+    room_m = std::min({room_m, edge.ink_m, edge.paper_m});
   }
-  cell_m_ = room_m / kCellsInRoom;
+  cell_m_ = std::min(room_m / kCellsInRoom, (high_m_ - low_m_).maxCoeff() / kCellsAcross);
+  reach_ = std::min(static_cast<int>(0.5 * room_m / cell_m_), kNone - 1);
   low_m_.array() -= room_m;
   high_m_.array() += room_m;
   columns_ = static_cast<int>(std::ceil((high_m_.x() - low_m_.x()) / cell_m_));
@@ -65,7 +66,6 @@ EdgeMap::EdgeMap(const std::vector<PrintedEdge>& edges) {
 
 // Cells up to half the room from the edge.
 void EdgeMap::draw(const PrintedEdge& edge) {
-  constexpr int kReach = 4;
   const bool along_x = edge.paper.x() != 0.0;
   const int direction = (along_x ? kPlusX : kPlusY) + (edge.paper.sum() < 0.0 ? 1 : 0);
   std::vector<std::uint8_t>& plane = cells_[static_cast<std::size_t>(direction)];
@@ -73,10 +73,10 @@ void EdgeMap::draw(const PrintedEdge& edge) {
   const double line = along_x ? from.x() : from.y();
   const int begin = static_cast<int>(std::round(along_x ? from.y() : from.x())),
             end = static_cast<int>(std::round(along_x ? to.y() : to.x())),
-            first = static_cast<int>(std::floor(line)) - kReach;
-  for (int across = first; across <= first + 2 * kReach; ++across) {
+            first = static_cast<int>(std::floor(line)) - reach_;
+  for (int across = first; across <= first + 2 * reach_; ++across) {
     const auto distance = static_cast<std::uint8_t>(std::abs(across + 0.5 - line));
-    if (distance >= kReach) continue;
+    if (distance >= reach_) continue;
     for (int along = begin; along < end; ++along) {
       const int column = along_x ? across : along, row = along_x ? along : across;
       if (column < 0 || row < 0 || column >= columns_ || row >= rows_) continue;

@@ -65,7 +65,7 @@ class EdgeMap {
 
   Eigen::Vector2d low_m_, high_m_;
   double cell_m_ = 0.0;
-  int columns_ = 0, rows_ = 0;
+  int columns_ = 0, rows_ = 0, reach_ = 0;
   std::array<std::vector<std::uint8_t>, 4> cells_;  // by direction
 };
 

@@ -3,6 +3,7 @@
 #include "core/frontend/circle_measurement.h"
 #include "core/frontend/ring_vote.h"
 #include "core/frontend/rival_placements.h"
+#include "core/frontend/window_trace.h"
 #include "core/geometry/homography.h"
 
 #include <Eigen/Geometry>
@@ -114,18 +115,24 @@ Judged shiftedTo(const PlacementScore& rival, const Judged& judged, const BurstW
   return Judged{motion, rival.measured, rival.missing};
 }
 
+// Edges of any speed are found in a long window, but measured in one that suits theirs.
+double measuredHalf_s(const BoardSearch& search, const BoardScene& scene, const FrontEndOptions& options) {
+  if (!scene.edges) return search.half_window_s;
+  return fitHalfWindow_s(boardSpeed_px_s(search.placements.front().motion, scene), options.tracking);
+}
+
 WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene,
                               const FrontEndOptions& options, BoardSearch& search) {
+  const double half_s = measuredHalf_s(search, scene, options);
   std::optional<Judged> best;
   for (const PlacementGroup& group : groupedByCircles(search.placements, scene.board)) {
-    std::optional<Judged> judged = judge(*group.first, window, scene, search.half_window_s, options);
+    std::optional<Judged> judged = judge(*group.first, window, scene, half_s, options);
     if (!judged) continue;
     const bool undecided = scene.edges || judged->measured < scene.board.pointCount();
     if (undecided && group.shifts.size() > 1) {
       const PlacementScore first =
-          rivalPlacements(judged->motion, group.shifts, window, scene, search.half_window_s, options.tracking)
-              .front();
-      judged = shiftedTo(first, *judged, window, scene, search.half_window_s, options);
+          rivalPlacements(judged->motion, group.shifts, window, scene, half_s, options.tracking).front();
+      judged = shiftedTo(first, *judged, window, scene, half_s, options);
     }
     if (!best || judged->value() > best->value()) best = judged;
     if (!scene.edges && best->measured == scene.board.pointCount()) break;
@@ -135,15 +142,15 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene
   if (scene.edges || best->measured < count) {
     const std::vector<PlacementScore> rivals =
         rivalPlacements(best->motion, rivalShifts(scene, options.grid.min_rival_overlap), window, scene,
-                        search.half_window_s, options.tracking);
+                        half_s, options.tracking);
     const PlacementScore& first = rivals.front();
-    best = shiftedTo(first, *best, window, scene, search.half_window_s, options);
+    best = shiftedTo(first, *best, window, scene, half_s, options);
     if ((scene.edges || best->measured < count) && rivals.size() > 1 &&
         rivals[1].value() > first.value() - options.grid.ambiguity_margin) {
       return WindowOutcome::Ambiguous;
     }
   }
-  if (best->measured < std::max<double>(options.grid.min_circles, options.grid.min_partial * count) ||
+  if (best->measured < std::max<double>(options.grid.min_circles, minPartial(count, options.grid)) ||
       best->missing > options.grid.max_missing * best->measured) {
     return WindowOutcome::TooFewInGrid;
   }
@@ -163,7 +170,8 @@ void searchCorners(const BurstWindow& window, const BoardScene& scene, const Fro
   for (const double reach_px : {options.saddle.short_reach_px, options.saddle.long_reach_px}) {
     std::vector<SaddleCandidate> saddles =
         voteForSaddles(crossings, window.resolution_px(), reach_px, options.saddle);
-    CornerLattice corners = findCornerLattice(saddles, scene.board, options.grid);
+    CornerLattice corners =
+        findCornerLattice(saddles, crossings, window.resolution_px(), scene.board, options.grid);
     if (!search.saddles.empty() && corners.nodes.size() <= search.corners.nodes.size()) continue;
     search.saddles = std::move(saddles);
     search.corners = std::move(corners);
@@ -229,6 +237,11 @@ class Searcher {
 
   BoardSearch searchBy(CandidateSource source) {
     BoardSearch search;
+    if (scene_.edges) {
+      search.half_window_s = kSearchReach_s;
+      searchWindow(windowOf(kSearchReach_s), speed_px_s_, scene_, options_, search);
+      return search;
+    }
     for (const double factor : kWindowFactors) {
       const double half_s = halfWindow_s(factor, source);
       if (factor > 1.0 && half_s == search.half_window_s) continue;

@@ -255,7 +255,7 @@ void BoardTracker::miss(const WindowSlot& slot, const BoardSearch* search) {
   report.events = static_cast<int>(history_.count(slot.begin_ns, slot.end_ns));
   if (search) {
     report.outcome = search->outcome;
-    report.candidates = static_cast<int>(search->candidates.size());
+    report.candidates = static_cast<int>(search->candidates.size() + search->saddles.size());
   } else if (report.events >= options_.detection.min_window_bursts) {
     // Between two searches: the same reason as the search before.
     report.outcome =

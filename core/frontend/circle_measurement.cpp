@@ -139,17 +139,23 @@ CircleObservation observation(const PointImage& point, const CentreFit& fit, con
   return out;
 }
 
-// Both edges of one of a corner's two lines: a line that ends there is not the corner's.
-bool hasLine(unsigned edges) {
+// True if one of a corner's two lines has bursts on all its edges that are long enough: a line that ends
+// there is not the corner's.
+bool hasLine(const PointImage& point, unsigned edges) {
   constexpr unsigned kAlongX = 0b0011, kAlongY = 0b1100;
-  return (edges & kAlongX) == kAlongX || (edges & kAlongY) == kAlongY;
+  unsigned shown = 0;
+  for (std::size_t k = 0; k < point.shown.size(); ++k) shown |= point.shown[k] ? 1u << k : 0u;
+  const auto has = [&](unsigned line) {
+    return (shown & line) != 0 && (edges & shown & line) == (shown & line);
+  };
+  return has(kAlongX) || has(kAlongY);
 }
 
 CircleVerdict judge(const PointImage& point, const CentreFit& fit, std::size_t points,
                     const TrackingOptions& options) {
   if (fit.points < options.min_circle_bursts) return CircleVerdict::TooFewBursts;
   if (fit.inliers < options.min_inliers * static_cast<double>(points)) return CircleVerdict::TooFewInliers;
-  const bool enough = point.is_corner ? hasLine(fit.sectors)
+  const bool enough = point.is_corner ? hasLine(point, fit.sectors)
                                       : std::popcount(fit.sectors) >= options.min_arc * kOutlineSectors;
   if (!enough) return CircleVerdict::TooShortArc;
   if (!(fit.shift.head<2>().norm() < options.max_centre_shift_px * point.scale))

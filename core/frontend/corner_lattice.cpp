@@ -19,7 +19,7 @@ namespace evical {
 namespace {
 
 constexpr int kLargestIndex = 100;
-constexpr std::size_t kMaxSeeds = 80;
+constexpr std::size_t kMaxSeeds = 400;
 constexpr std::size_t kNeighbours = 10;
 constexpr double kMaxSideRatio = 2.5;   // of a tilted square
 constexpr double kSeedTolerance = 0.3;  // of the fourth corner, relative to a side
@@ -166,6 +166,65 @@ class LatticeGrowth {
   std::map<std::pair<int, int>, std::size_t> at_;
 };
 
+// Brightness gradients of a window's crossings, pixel by pixel.
+class GradientPicture {
+ public:
+  GradientPicture(const std::vector<MovedCrossing>& crossings, Resolution size_px)
+      : width_(size_px.width_px),
+        height_(size_px.height_px),
+        sums_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), Eigen::Vector2f::Zero()) {
+    for (const MovedCrossing& crossing : crossings) {
+      const int x = static_cast<int>(std::lround(crossing.at_px.x())),
+                y = static_cast<int>(std::lround(crossing.at_px.y()));
+      if (isInside(x, y)) sums_[static_cast<std::size_t>(y * width_ + x)] += crossing.to_bright;
+    }
+  }
+
+  // Share of the middle half of a line along which there are edges that are bright on its side `to_bright`
+  // (unit), minus the share of the opposite ones.
+  double support(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                 const Eigen::Vector2d& to_bright) const {
+    const int steps = std::max(3, static_cast<int>(std::ceil(0.5 * (to - from).norm())));
+    const Eigen::Vector2f normal = to_bright.cast<float>();
+    int agreeing = 0;
+    for (int k = 0; k < steps; ++k) {
+      const Eigen::Vector2d at = from + (0.25 + 0.5 * k / (steps - 1)) * (to - from);
+      float sum = 0.0f;
+      for (const double across_px : {-1.0, 0.0, 1.0}) {
+        const Eigen::Vector2d beside = at + across_px * to_bright;
+        const int x = static_cast<int>(std::lround(beside.x())),
+                  y = static_cast<int>(std::lround(beside.y()));
+        if (isInside(x, y)) sum += sums_[static_cast<std::size_t>(y * width_ + x)].dot(normal);
+      }
+      constexpr float kEdge = 0.5f;
+      agreeing += (sum > kEdge) - (sum < -kEdge);
+    }
+    return static_cast<double>(agreeing) / steps;
+  }
+
+ private:
+  bool isInside(int x, int y) const { return x >= 0 && y >= 0 && x < width_ && y < height_; }
+
+  int width_, height_;
+  std::vector<Eigen::Vector2f> sums_;
+};
+
+// True if edges are along two opposite sides of a square, dark or bright inside, and none contradicts. Motion
+// along a side leaves it without events.
+bool hasSides(const std::array<Eigen::Vector2d, 4>& square, bool dark, const GradientPicture& picture) {
+  constexpr double kSupported = 0.6, kContradicted = -0.3;
+  const Eigen::Vector2d middle = 0.25 * (square[0] + square[1] + square[2] + square[3]);
+  std::array<double, 4> sides = {};
+  for (std::size_t k = 0; k < square.size(); ++k) {
+    const Eigen::Vector2d &from = square[k], &to = square[(k + 1) % square.size()];
+    Eigen::Vector2d normal = (to - from).unitOrthogonal();
+    if ((normal.dot(0.5 * (from + to) - middle) > 0.0) != dark) normal = -normal;
+    sides[k] = picture.support(from, to, normal);
+    if (sides[k] < kContradicted) return false;
+  }
+  return (sides[0] > kSupported && sides[2] > kSupported) || (sides[1] > kSupported && sides[3] > kSupported);
+}
+
 // The nearest saddles of the other kind.
 std::vector<std::size_t> oppositesOf(std::size_t seed, const std::vector<SaddleCandidate>& saddles) {
   constexpr double kMinStep_px = 4.0;
@@ -200,8 +259,10 @@ std::optional<std::size_t> fourthCorner(const std::vector<SaddleCandidate>& sadd
 
 }  // namespace
 
-CornerLattice findCornerLattice(const std::vector<SaddleCandidate>& saddles, const Board& board,
-                                const GridOptions& options) {
+CornerLattice findCornerLattice(const std::vector<SaddleCandidate>& saddles,
+                                const std::vector<MovedCrossing>& crossings, Resolution resolution_px,
+                                const Board& board, const GridOptions& options) {
+  const GradientPicture picture(crossings, resolution_px);
   LatticeGrowth growth(saddles, board, options);
   CornerLattice best;
   std::vector<bool> settled(saddles.size(), false);
@@ -223,6 +284,9 @@ CornerLattice findCornerLattice(const std::vector<SaddleCandidate>& saddles, con
         const bool dark = isDarkBetween(saddles[seed], side_a, side_b);
         // A dark square of an AprilGrid: a tag, whose corners are dark inside, or one of the small squares.
         if (tags && !dark) continue;
+        if (!hasSides({saddles[seed].at_px, saddles[a].at_px, saddles[*c].at_px, saddles[b].at_px}, dark,
+                      picture))
+          continue;
         for (int first_line = 0; first_line <= (tags ? 1 : 0); ++first_line) {
           std::vector<CornerNode> nodes = growth.from({seed, a, *c, b}, first_line);
           if (nodes.size() <= best.nodes.size()) continue;

@@ -24,8 +24,9 @@ struct CornerLattice {
 };
 
 // The lattice with the most corners; empty if there is none.
-CornerLattice findCornerLattice(const std::vector<SaddleCandidate>& saddles, const Board& board,
-                                const GridOptions& options);
+CornerLattice findCornerLattice(const std::vector<SaddleCandidate>& saddles,
+                                const std::vector<MovedCrossing>& crossings, Resolution resolution_px,
+                                const Board& board, const GridOptions& options);
 
 // Placements with nearly the largest number of corners on the board, in descending order. Their motion is
 // that of the crossings.

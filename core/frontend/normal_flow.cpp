@@ -6,7 +6,7 @@
 
 namespace evical {
 
-ActiveEventSurface::ActiveEventSurface(const BurstWindow& window, int border_px)
+ActiveEventSurface::ActiveEventSurface(const BurstWindow& window, int border_px, Kept kept)
     : border_px_(border_px), stride_(window.resolution_px().width_px + 2 * border_px) {
   const int rows = window.resolution_px().height_px + 2 * border_px;
   for (std::vector<float>& plane : times_s_)
@@ -18,7 +18,9 @@ ActiveEventSurface::ActiveEventSurface(const BurstWindow& window, int border_px)
     float& time_s = times_s_[leading][static_cast<std::size_t>((y + border_px) * stride_ + x + border_px)];
     if (!active(time_s))
       pixels_.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), leading});
-    if (burst.time_s > time_s) time_s = burst.time_s;
+    const bool replaces =
+        kept == Kept::Last ? burst.time_s > time_s : std::abs(burst.time_s) < std::abs(time_s);
+    if (replaces) time_s = burst.time_s;
   }
 }
 

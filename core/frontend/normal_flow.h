@@ -27,8 +27,11 @@ class ActiveEventSurface {
   static constexpr float kNever_s = -1e9f;
   static bool active(float time_s) { return time_s > kNever_s; }
 
+  // The last edge of the window, or the one nearest to its middle.
+  enum class Kept { Last, Nearest };
+
   // Neighbours up to border_px away can be read at every pixel of the image.
-  ActiveEventSurface(const BurstWindow& window, int border_px);
+  ActiveEventSurface(const BurstWindow& window, int border_px, Kept kept = Kept::Last);
 
   const std::vector<ActivePixel>& pixels() const { return pixels_; }
   int stride() const { return stride_; }

@@ -149,10 +149,13 @@ bool hasBothSides(const SaddleCandidate& candidate, const std::vector<const Move
 }  // namespace
 
 std::vector<MovedCrossing> crossingsAtMiddle(const BurstWindow& window, const NormalFlowOptions& options) {
-  const ActiveEventSurface surface(window, options.plane_radius_px);
+  const ActiveEventSurface surface(window, options.plane_radius_px, ActiveEventSurface::Kept::Nearest);
   std::vector<MovedCrossing> crossings;
   for (const NormalFlow& flow : estimateNormalFlow(surface, options)) {
     const float speed = flow.velocity_px_s.norm();
+    // The window is long enough for slow edges. Of fast ones, crossings far from the middle are less
+    // accurate.
+    if (std::abs(flow.time_s) * speed > 0.5f * static_cast<float>(options.window_travel_px)) continue;
     const Eigen::Vector2f normal = flow.velocity_px_s / speed;
     // Darker: the edge moves towards its bright side.
     crossings.push_back({Eigen::Vector2f(flow.x_px, flow.y_px) - flow.time_s * flow.velocity_px_s,

@@ -161,9 +161,10 @@ RgbImage drawSearch(const BurstWindow& window, const BoardSearch& search, const 
     paintBoard(canvas, *search.motion, scene, kBoard, 2, style);
     paintBoardNumbers(canvas, *search.motion, scene);
   }
-  canvas.title(print("search: %s   +-%.1f ms, %d bursts, %zu candidates, %zu moving circles, %zu in lattice",
-                     windowOutcomeName(search.outcome), 1e3 * search.half_window_s, search.bursts,
-                     search.candidates.size(), search.circles.size(), search.lattice.size()));
+  canvas.title(print(
+      "search: %s   +-%.1f ms, %d bursts, %zu candidates, %zu moving circles, %zu corners, %zu in lattice",
+      windowOutcomeName(search.outcome), 1e3 * search.half_window_s, search.bursts, search.candidates.size(),
+      search.circles.size(), search.saddles.size(), search.lattice.size() + search.corners.nodes.size()));
   std::vector<std::pair<std::string, Colour>> words = {{"brighter", kBrighter}, {"darker", kDarker}};
   if (arcs) {
     words.insert(words.end(), {{"run", kRun}, {"chase", kChase}, {"other", kOther}, {"pairs", kLattice}});

@@ -35,9 +35,14 @@ TrackingEnd endOf(int found, int expected, const FrontEndOptions& options) {
 
 }  // namespace
 
+double minPartial(int count, const GridOptions& options) {
+  constexpr int kMany = 50;  // of a board with more points, a smaller share determines its pose as well
+  return std::max<double>(kMinForHomography, options.min_partial * std::min(count, kMany));
+}
+
 WindowOutcome outcomeOf(int found, const BoardScene& scene, const GridOptions& options) {
   const int count = scene.board.pointCount();
-  const double least = std::max<double>(kMinForHomography, options.min_partial * count);
+  const double least = minPartial(count, options);
   if (found < least) return WindowOutcome::TooFewInGrid;
   return found == count ? WindowOutcome::Complete : WindowOutcome::Partial;
 }

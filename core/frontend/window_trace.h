@@ -54,6 +54,9 @@ struct WindowTrace {
   bool held() const { return ended == TrackingEnd::Held; }
 };
 
+// Smallest number of points of a partial view of a board with `count` of them.
+double minPartial(int count, const GridOptions& options);
+
 // Outcome of a tracked window with this number of circles.
 WindowOutcome outcomeOf(int found, const BoardScene& scene, const GridOptions& options);
 

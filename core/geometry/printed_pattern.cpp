@@ -205,16 +205,18 @@ void PrintedPattern::addEdges(bool vertical, std::vector<PrintedEdge>& edges) co
       const int side = before == after ? 0 : (before ? 1 : -1);
       const double begin_m = along[static_cast<std::size_t>(cell)],
                    end_m = along[static_cast<std::size_t>(cell) + 1];
-      const double room_m = side == 0 ? 0.0 : std::min(roomFrom(line, cell, 1), roomFrom(line, cell, -1));
+      const double ink_m = side == 0 ? 0.0 : roomFrom(line, cell, -side),
+                   paper_m = side == 0 ? 0.0 : roomFrom(line, cell, side);
       const auto place = [&](double along_m) {
         return vertical ? Eigen::Vector2d(placeOf(line), along_m) : Eigen::Vector2d(along_m, placeOf(line));
       };
       if (side != 0 && side == side_before) {
         edges.back().to_m = place(end_m);
-        edges.back().room_m = std::min(edges.back().room_m, room_m);
+        edges.back().ink_m = std::min(edges.back().ink_m, ink_m);
+        edges.back().paper_m = std::min(edges.back().paper_m, paper_m);
       } else if (side != 0) {
         const Eigen::Vector2d normal = vertical ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY();
-        edges.push_back({place(begin_m), place(end_m), side * normal, room_m});
+        edges.push_back({place(begin_m), place(end_m), side * normal, ink_m, paper_m});
       }
       side_before = side;
     }

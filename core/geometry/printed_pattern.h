@@ -32,7 +32,7 @@ std::vector<PaintedBox> boardSquares(const Board& board, const TagPrint& print);
 struct PrintedEdge {
   Eigen::Vector2d from_m = Eigen::Vector2d::Zero(), to_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d paper = Eigen::Vector2d::UnitX();  // unit normal, from the ink to the paper
-  double room_m = 0.0;                               // to the nearest parallel edge on either side
+  double ink_m = 0.0, paper_m = 0.0;                 // to the nearest parallel edge on either side
 
   double length_m() const { return (to_m - from_m).norm(); }
 };

@@ -120,6 +120,21 @@ Image objects(int size, double round_share, Random& random) {
   return image;
 }
 
+// Checkerboards and tiles, all upright: the worst that can be behind a board of squares.
+void addCheckerboards(Image& image, double side_texels, Random& random) {
+  constexpr int kBoards = 40, kRows = 7, kColumns = 10;
+  constexpr float kContrast = 1.5f;
+  for (int board = 0; board < kBoards; ++board) {
+    const int x0 = static_cast<int>(image.size * random.uniform()),
+              y0 = static_cast<int>(image.size * random.uniform());
+    for (int y = 0; y < kRows * side_texels; ++y)
+      for (int x = 0; x < kColumns * side_texels; ++x) {
+        const bool dark = (static_cast<int>(x / side_texels) + static_cast<int>(y / side_texels)) % 2 == 0;
+        image.at(x0 + x, y0 + y) = dark ? -kContrast : kContrast;
+      }
+  }
+}
+
 void blur(Image& image, double sigma_texels) {
   const int reach = static_cast<int>(std::ceil(3.0 * sigma_texels));
   std::vector<float> kernel;
@@ -144,6 +159,7 @@ ClutterTexture::ClutterTexture(const ClutterTextureOptions& options) {
   Random random(options.seed, kStream);
   Image cloudy = clouds(kSize, random);
   Image flat = objects(kSize, options.round_share, random);
+  if (options.square_texels > 0.0) addCheckerboards(flat, options.square_texels, random);
   const double object_weight = options.contrast * std::sqrt(options.object_share),
                cloud_weight = options.contrast * std::sqrt(1.0 - options.object_share);
   for (std::size_t i = 0; i < flat.values.size(); ++i) {

@@ -8,10 +8,11 @@ namespace evical {
 
 struct ClutterTextureOptions {
   std::uint64_t seed = 1;
-  double contrast = 0.5;      // sigma of the log reflectance
-  double object_share = 0.5;  // of the variance: flat objects with sharp outlines; the rest is cloudy
-  double round_share = 0.0;   // of the objects: discs, the others are rectangles
-  double blur_texels = 0.6;   // sigma of the optics' point spread
+  double contrast = 0.5;       // sigma of the log reflectance
+  double object_share = 0.5;   // of the variance: flat objects with sharp outlines; the rest is cloudy
+  double round_share = 0.0;    // of the objects: discs, the others are rectangles
+  double square_texels = 0.0;  // side of the squares of other checkerboards in front of it; 0: none
+  double blur_texels = 0.6;    // sigma of the optics' point spread
 };
 
 class ClutterTexture {

@@ -52,7 +52,7 @@ RoomRenderer::RoomRenderer(const Scenario& scenario, std::size_t index)
   }
   pictures_.emplace_back(ClutterTextureOptions{scenario.seed, scenario.scene.clutter_contrast,
                                                scenario.scene.clutter_object_share,
-                                               scenario.scene.clutter_round_share, sharpest_texels_});
+                                               scenario.scene.clutter_round_share, 0.0, sharpest_texels_});
   double blur_texels = sharpest_texels_;
   for (int k = 1; k < kBlurs; ++k, blur_texels *= 2.0)
     pictures_.emplace_back(pictures_.back(), std::sqrt(3.0) * blur_texels);  // (2 s)^2 - s^2

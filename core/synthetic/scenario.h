@@ -197,6 +197,7 @@ struct SceneModel {
   double margin_m = 0.06;             // of the board around its outer circles' centres
   double clutter_contrast = 0.5;      // sigma of the background's log reflectance; 0: bare
   double clutter_round_share = 0.0;   // of the objects: discs like the board's circles
+  double clutter_squares_px = 0.0;    // side of the squares of checkerboards in it; 0: none
   double clutter_distance_m = 0.3;    // behind the board
   double clutter_object_share = 0.5;  // of the variance: flat objects with outlines; the rest is clouds
   double clutter_detail_px = 2.0;     // smallest structure, at the mean distance

@@ -72,14 +72,16 @@ void readPeople(const YamlNode& map, PeopleModel& people) {
 
 void readScene(const YamlNode& map, SceneModel& scene) {
   map.allowOnly({"bright_reflectance", "dark_reflectance", "margin_m", "clutter_contrast",
-                 "clutter_object_share", "clutter_round_share", "clutter_distance_m", "clutter_detail_px",
-                 "lamp_flicker", "lamp_flicker_hz", "blink_hz", "lamp_m", "gloss", "hand", "people"});
+                 "clutter_object_share", "clutter_round_share", "clutter_squares_px", "clutter_distance_m",
+                 "clutter_detail_px", "lamp_flicker", "lamp_flicker_hz", "blink_hz", "lamp_m", "gloss",
+                 "hand", "people"});
   get(map, "bright_reflectance", scene.bright_reflectance, 1e-3, 1.0, "");
   get(map, "dark_reflectance", scene.dark_reflectance, 1e-3, 1.0, "");
   get(map, "margin_m", scene.margin_m, 0.0, 10.0, "m");
   get(map, "clutter_contrast", scene.clutter_contrast, 0.0, 3.0, "");
   get(map, "clutter_object_share", scene.clutter_object_share, 0.0, 1.0, "");
   get(map, "clutter_round_share", scene.clutter_round_share, 0.0, 1.0, "");
+  get(map, "clutter_squares_px", scene.clutter_squares_px, 0.0, 200.0, "px");
   get(map, "clutter_distance_m", scene.clutter_distance_m, 0.0, 100.0, "m");
   get(map, "clutter_detail_px", scene.clutter_detail_px, 0.5, 100.0, "px");
   get(map, "lamp_flicker", scene.lamp_flicker, 0.0, 0.9, "");

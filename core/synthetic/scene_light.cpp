@@ -87,7 +87,8 @@ SceneLight::SceneLight(const Scenario& scenario, std::size_t camera, double opti
       sheet_high_m_(pattern_.high_m().array() + marginOf(scenario)),
       blur_px_(static_cast<float>(std::sqrt(optics_blur_px * optics_blur_px + 1.0 / 12.0))),
       texture_({scenario.seed, scenario.scene.clutter_contrast, scenario.scene.clutter_object_share,
-                scenario.scene.clutter_round_share, blur_px_ * texelsPerPixel()}) {
+                scenario.scene.clutter_round_share, scenario.scene.clutter_squares_px * texelsPerPixel(),
+                blur_px_ * texelsPerPixel()}) {
   const SceneModel& scene = scenario.scene;
   const bool dark = scenario.board.circles == CircleShade::Dark;
   paper_ = static_cast<float>(dark ? scene.bright_reflectance : scene.dark_reflectance);

@@ -23,7 +23,11 @@ double texelsPerPixel(const Scenario& scenario) {
 ClutterTextureOptions textureOptions(const Scenario& scenario, std::size_t camera) {
   // In a room this picture is not visible; a uniform one saves time.
   const double contrast = scenario.room.exists() ? 0.0 : scenario.scene.clutter_contrast;
-  return {scenario.seed, contrast, scenario.scene.clutter_object_share, scenario.scene.clutter_round_share,
+  return {scenario.seed,
+          contrast,
+          scenario.scene.clutter_object_share,
+          scenario.scene.clutter_round_share,
+          scenario.scene.clutter_squares_px * texelsPerPixel(scenario),
           scenario.cameras[camera].pixel.effectiveBlur_px() * texelsPerPixel(scenario)};
 }
 

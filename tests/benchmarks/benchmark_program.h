@@ -68,6 +68,9 @@ int run(int argc, char** argv);
 namespace board_starts {
 int run(int argc, char** argv);
 }
+namespace boards {
+int run(int argc, char** argv);
+}
 namespace centre_errors {
 int run(int argc, char** argv);
 }

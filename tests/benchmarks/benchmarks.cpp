@@ -18,9 +18,10 @@ struct Benchmark {
   std::string_view description;
 };
 
-constexpr std::array<Benchmark, 16> kBenchmarks = {{
+constexpr std::array<Benchmark, 17> kBenchmarks = {{
     {"accuracy", accuracy::run, "Accuracy on simulated recordings against their truth"},
     {"board_starts", board_starts::run, "Identification of the board from any start time"},
+    {"boards", boards::run, "Boards of squares before event cameras"},
     {"centre_errors", centre_errors::run,
      "Errors of circle centres along the motion, on simulated recordings"},
     {"check", check::run, "evical check on simulated pairs of recordings"},
