@@ -262,13 +262,22 @@ float SceneRenderer::disk(const Eigen::Vector2f& away_m, const Eigen::Matrix2f& 
 // board, approximate.
 float SceneRenderer::inkOf(const Eigen::Vector2f& point_m, const Eigen::Matrix2f& board_per_px,
                            const TileView& view) const {
-  const Eigen::Array2f px_per_m = board_per_px.rowwise().norm().array().inverse();
+  const float x_px_per_m = 1.0f / board_per_px.row(0).norm(), y_px_per_m = 1.0f / board_per_px.row(1).norm();
+  const float reach_px = kEdgeReach * blur_px_;
+  // Share of a strip from low to high.
+  const auto within = [&](float from_low_px, float from_high_px) {
+    return (from_low_px >= reach_px ? 1.0f : edge(from_low_px)) -
+           (from_high_px <= -reach_px ? 0.0f : edge(from_high_px));
+  };
   float ink = 0.0f;
   for (const InkBox& box : view.boxes) {
-    const Eigen::Array2f from_low_px = (point_m - box.low_m).array() * px_per_m,
-                         from_high_px = (point_m - box.high_m).array() * px_per_m;
-    ink +=
-        (edge(from_low_px.x()) - edge(from_high_px.x())) * (edge(from_low_px.y()) - edge(from_high_px.y()));
+    const float left_px = (point_m.x() - box.low_m.x()) * x_px_per_m,
+                right_px = (point_m.x() - box.high_m.x()) * x_px_per_m;
+    if (left_px <= -reach_px || right_px >= reach_px) continue;
+    const float above_px = (point_m.y() - box.low_m.y()) * y_px_per_m,
+                below_px = (point_m.y() - box.high_m.y()) * y_px_per_m;
+    if (above_px <= -reach_px || below_px >= reach_px) continue;
+    ink += within(left_px, right_px) * within(above_px, below_px);
   }
   return std::min(ink, 1.0f);
 }

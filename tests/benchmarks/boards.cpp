@@ -13,8 +13,8 @@
 #include "core/pipeline/lens/intrinsics_calibration.h"
 #include "core/pipeline/rig/calibration_pipeline.h"
 #include "core/pipeline/simulate/simulation.h"
+#include "core/synthetic/board_truth.h"
 #include "tests/benchmarks/benchmark_program.h"
-#include "tests/benchmarks/centre_truth.h"
 #include "tests/benchmarks/scenario_run.h"
 #include "tests/support/test_folders.h"
 
@@ -153,17 +153,26 @@ int wrongWindows(const Scenario& scenario, const BoardObservations& observations
                             : board.spacing_m;
   const double f_px = idealFocalLength_px(scenario.cameras[0].intrinsics).minCoeff();
   const double step_px = step_m * f_px / (scenario.motion.distance_m + scenario.motion.distance_amplitude_m);
-  std::vector<bool> wrong(observations.views.size(), false);
-  for (const CentreError& error : errorsOf(scenario, observations)) {
-    const Eigen::Matrix2d information = error.whitening.transpose() * error.whitening;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(information);
-    for (Eigen::Index k = 0; k < 2; ++k) {
-      if (axes.eigenvalues()[k] * kUnknown_px * kUnknown_px < 1.0) continue;
-      if (std::abs(axes.eigenvectors().col(k).dot(error.error_px)) > std::max(kWrong * step_px, 1.0))
-        wrong[error.view] = true;
-    }
+  const SinusoidMotion motion(scenario);
+  int wrong = 0;
+  for (const BoardView& view : observations.views) {
+    const std::vector<TrueCircle> truths = trueBoardView(motion, scenario, 0, view.time_s);
+    const auto isWrong = [&](const CircleObservation& corner) {
+      const auto truth = std::find_if(truths.begin(), truths.end(),
+                                      [&](const TrueCircle& each) { return each.circle == corner.circle; });
+      if (truth == truths.end()) return true;
+      const Eigen::Vector2d error_px =
+          corner.centre_px + (view.time_s - corner.time_s) * corner.velocity_px_s - truth->centre_px;
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(corner.covariance_px2);
+      for (Eigen::Index k = 0; k < 2; ++k)
+        if (axes.eigenvalues()[k] < kUnknown_px * kUnknown_px &&
+            std::abs(axes.eigenvectors().col(k).dot(error_px)) > std::max(kWrong * step_px, 1.5))
+          return true;
+      return false;
+    };
+    wrong += std::any_of(view.circles.begin(), view.circles.end(), isWrong);
   }
-  return static_cast<int>(std::count(wrong.begin(), wrong.end(), true));
+  return wrong;
 }
 
 struct Rms {
