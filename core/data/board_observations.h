@@ -34,6 +34,11 @@ struct CircleObservation {
   double longer_exposed_s = 0.0;
 };
 
+// Corners are measured from their edges. If the motion was along one of the two lines, the place along the
+// other one is unknown, and its sigma is many pixels. The direction in which such a corner is known; empty if
+// it is known in all directions.
+std::optional<Eigen::Vector2d> onlyKnownDirection(const Eigen::Matrix2d& covariance_px2);
+
 enum class ViewKind { Complete, Partial };
 
 // The board in one window.

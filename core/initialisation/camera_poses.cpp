@@ -20,15 +20,33 @@ namespace {
 constexpr std::size_t kMinCircles = 4;
 constexpr double kNoFit_px = 1e9;
 
-using Points = std::vector<std::pair<int, Eigen::Vector2d>>;  // board circle, ideal pixel
+struct SeenPoint {
+  int circle;
+  Eigen::Vector2d pixel;                                 // ideal
+  Eigen::Matrix2d weight = Eigen::Matrix2d::Identity();  // of its directions
+};
+using Points = std::vector<SeenPoint>;
 
 Points atOneTime(const BoardView& view) {
+  constexpr double kUnknown = 1e-3;  // weight of a direction in which a corner is not known
   Points points;
   for (const CircleObservation& circle : view.circles) {
-    points.emplace_back(circle.circle,
-                        circle.centre_px + circle.velocity_px_s * (view.time_s - circle.time_s));
+    SeenPoint& point = points.emplace_back(
+        SeenPoint{circle.circle, circle.centre_px + circle.velocity_px_s * (view.time_s - circle.time_s)});
+    if (const auto known = onlyKnownDirection(circle.covariance_px2))
+      point.weight = kUnknown * point.weight + (1.0 - kUnknown) * *known * known->transpose();
   }
   return points;
+}
+
+// False if all corners are known in the same direction only.
+bool determinePose(const Points& points) {
+  constexpr double kMinShare = 0.05;
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const SeenPoint& point : points) sum += point.weight / static_cast<double>(points.size());
+  const double half_trace = 0.5 * sum.trace();
+  const double least = half_trace - std::sqrt(std::max(half_trace * half_trace - sum.determinant(), 0.0));
+  return least > kMinShare;
 }
 
 // Gauss-Newton on the ellipses' centres; returns the RMS error in pixels, per circle.
@@ -41,15 +59,15 @@ double refine(const Points& points, const CameraIntrinsics& camera, const Board&
     Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
     Eigen::Matrix<double, 6, 1> vector = Eigen::Matrix<double, 6, 1>::Zero();
     double squares = 0.0;
-    for (const auto& [circle, pixel] : points) {
+    for (const auto& [circle, pixel, weight] : points) {
       Eigen::Matrix<double, 2, 6> jacobian;
       const auto centre =
           projectedCircleCentre(camera, camera_from_board, board.point_m(circle), board.radius_m, &jacobian);
       if (!centre) return kNoFit_px;
       const Eigen::Vector2d error = *centre - pixel;
-      matrix += jacobian.transpose() * jacobian;
-      vector -= jacobian.transpose() * error;
-      squares += error.squaredNorm();
+      matrix += jacobian.transpose() * weight * jacobian;
+      vector -= jacobian.transpose() * weight * error;
+      squares += error.dot(weight * error);
     }
     rms = std::sqrt(squares / static_cast<double>(points.size()));
     if (iteration == kIterations) break;
@@ -67,7 +85,7 @@ std::vector<std::pair<double, RigidTransform>> planarPoses(const Points& points,
                                                            const Board& board) {
   std::vector<cv::Point3d> on_board;
   std::vector<cv::Point2d> rays;
-  for (const auto& [circle, pixel] : points) {
+  for (const auto& [circle, pixel, weight] : points) {
     const Eigen::Vector2d centre = board.point_m(circle);
     on_board.emplace_back(centre.x(), centre.y(), 0.0);
     const Eigen::Vector2d ray =
@@ -111,7 +129,9 @@ CameraPoses estimateCameraPoses(const CameraData& camera, const Board& board,
     context.throwIfStopped();
     const BoardView& view = camera.observations.views[v];
     if (view.circles.size() < kMinCircles) continue;
-    const auto found = planarPoses(atOneTime(view), *camera.lens.detection_intrinsics, board);
+    const Points points = atOneTime(view);
+    if (!determinePose(points)) continue;
+    const auto found = planarPoses(points, *camera.lens.detection_intrinsics, board);
     if (!found.empty()) errors_px.push_back(found.front().first);
     if (found.empty() || !(found.front().first <= options.max_reprojection_px)) {
       ++result.rejected;

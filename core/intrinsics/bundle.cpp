@@ -103,7 +103,8 @@ class Adjustment {
         Eigen::Vector2d residual;
         CircleCentreCost(bundle_.intrinsics.model, circle, board_.radius_m, 1.0)
             .Evaluate(blocks.data(), residual.data(), nullptr);
-        of_view.push_back(residual.squaredNorm());
+        const double squares = residual.squaredNorm();
+        of_view.push_back(circle.only_known ? asOfTwoDirections(squares) : squares);
       }
     }
     return all;
@@ -226,6 +227,7 @@ Eigen::Vector2d Bundle::error_px(std::size_t view, const SensorCircle& circle) c
   Eigen::Vector2d error;
   CircleCentreCost(intrinsics.model, unweighted, radius_m, 1.0)
       .Evaluate(blocks.data(), error.data(), nullptr);
+  if (circle.only_known) error = circle.only_known->dot(error) * *circle.only_known;
   return error;
 }
 

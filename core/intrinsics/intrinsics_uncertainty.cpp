@@ -79,7 +79,7 @@ ViewInformation viewInformation(const SensorView& view, const RigidTransform& po
     out.by_place.middleCols<2>(place) += weight * by_shared.transpose() * cost.whitening_px();
     pose_by_place.middleCols<2>(place) += weight * by_pose.transpose() * cost.whitening_px();
     out.squares += weight * residual.squaredNorm();
-    out.residuals += 2;
+    out.residuals += circle.only_known ? 1 : 2;
   }
   if (out.residuals == 0) return out;
   const Eigen::LDLT<PoseMatrix> solver(a);

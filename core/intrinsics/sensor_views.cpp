@@ -32,6 +32,7 @@ SensorCircle sensorCircle(const CircleObservation& circle, double time_s, const 
   const double floor_px2 = options.min_centre_sigma_px * options.min_centre_sigma_px;
   out.covariance_px2 = sensor_from_ideal * circle.covariance_px2 * sensor_from_ideal.transpose() +
                        floor_px2 * Eigen::Matrix2d::Identity();
+  out.only_known = onlyKnownDirection(out.covariance_px2);
   out.lead_effect = sensor_from_ideal * circle.edge_localisation_bias_effect;
   return out;
 }
@@ -42,7 +43,8 @@ std::vector<SensorView> sensorViews(const BoardObservations& observations, const
                                     const std::optional<CameraIntrinsics>& detection_intrinsics,
                                     const IntrinsicsOptions& options) {
   std::vector<SensorView> views;
-  const double least = std::max(4.0, options.min_circles * board.pointCount());
+  constexpr int kMany = 50;  // of a board with more points, a smaller share suffices
+  const double least = std::max(4.0, options.min_circles * std::min(board.pointCount(), kMany));
   for (const BoardView& view : observations.views) {
     if (static_cast<double>(view.circles.size()) < least) continue;
     SensorView& out = views.emplace_back();

@@ -21,6 +21,7 @@ struct SensorCircle {
   // Position on the sensor of the centre of the ellipse, which is an ellipse in ideal pixels only.
   Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance_px2 = Eigen::Matrix2d::Identity();
+  std::optional<Eigen::Vector2d> only_known = {};         // onlyKnownDirection
   Eigen::Vector2d lead_effect = Eigen::Vector2d::Zero();  // px per pixel of edge localisation bias
   bool used = true;
 };

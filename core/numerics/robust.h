@@ -37,6 +37,12 @@ inline double cauchyWeight(double squared_error) {
 
 inline constexpr double kMedianOfChi2With2 = 1.3862943611198906;  // 2 ln 2
 
+// The square in sigmas of a point's error in two directions that is as probable as this one in one direction.
+inline double asOfTwoDirections(double squared_error) {
+  constexpr double kSmallest = 1e-300;
+  return -2.0 * std::log(std::max(std::erfc(std::sqrt(0.5 * squared_error)), kSmallest));
+}
+
 // Ratio of the errors of points to their stated sigmas, from the median of their normalised squared norms. 1
 // if there are none.
 inline double scaleOfPoints(std::vector<double> squared_errors) {

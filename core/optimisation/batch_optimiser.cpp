@@ -365,7 +365,7 @@ void Batch::reportFits() {
   }
   std::vector<std::vector<std::uint8_t>> view_used;
   for (const CameraData& camera : input_.cameras) view_used.emplace_back(camera.observations.views.size());
-  std::vector<double> normalised2(input_.cameras.size());
+  std::vector<double> normalised2(input_.cameras.size()), coordinates(input_.cameras.size());
   solution_.circle_errors =
       circleErrors(input_, solution_.state, options_, solution_.scales, &solution_.used_circles);
   for (const CircleError& error : solution_.circle_errors) {
@@ -375,14 +375,15 @@ void Batch::reportFits() {
     if (!used) continue;
     fit.reprojection_rms_px += error.error_px.squaredNorm();
     normalised2[error.camera] += error.normalised2;
+    coordinates[error.camera] += error.known_directions;
     fit.windows_used += view_used[error.camera][error.view] ? 0 : 1;
     view_used[error.camera][error.view] = 1;
   }
   for (std::size_t i = 0; i < input_.cameras.size(); ++i) {
     CameraFit& fit = solution_.cameras[i];
-    const double coordinates = 2.0 * std::max(1, fit.circles_used);
-    fit.reprojection_rms_px = std::sqrt(2.0 * fit.reprojection_rms_px / coordinates);  // of distances
-    fit.normalised_rms = std::sqrt(normalised2[i] / coordinates);
+    const double count = std::max(1.0, coordinates[i]);
+    fit.reprojection_rms_px = std::sqrt(2.0 * fit.reprojection_rms_px / count);  // of distances
+    fit.normalised_rms = std::sqrt(normalised2[i] / count);
     fit.neighbour_agreement = neighbourAgreement(input_, solution_.state, options_, weights_, i);
   }
 }

@@ -88,6 +88,10 @@ std::vector<CircleMeasurement> appendErrors(const CalibrationInput& input, const
     error.normalised2 = of_circle.squaredNorm();
     if (error.inFront())
       error.error_px = cost.circles()[i].whitening_px.triangularView<Eigen::Lower>().solve(of_circle);
+    if (const auto known = onlyKnownDirection(seen.circles[within[i].index].covariance_px2)) {
+      error.error_px = known->dot(error.error_px) * *known;
+      error.known_directions = 1;
+    }
   }
   return cost.circles();
 }
@@ -211,7 +215,9 @@ double neighbourAgreement(const CalibrationInput& input, const CalibrationState&
 double robustScale(const std::vector<CircleError>& errors, std::size_t camera) {
   std::vector<double> normalised2;
   for (const CircleError& error : errors) {
-    if (error.camera == camera) normalised2.push_back(error.normalised2);
+    if (error.camera == camera)
+      normalised2.push_back(error.known_directions == 1 ? asOfTwoDirections(error.normalised2)
+                                                        : error.normalised2);
   }
   return scaleOfPoints(std::move(normalised2));
 }

@@ -19,11 +19,13 @@ inline double circleTime_s(const CameraState& camera, const CircleObservation& c
 }
 
 struct CircleError {
-  std::size_t camera = 0, view = 0, index = 0;  // index: position in the view's list
-  Eigen::Vector2d error_px =
-      Eigen::Vector2d::Zero();  // predicted - measured, edge localisation bias included
+  std::size_t camera = 0, view = 0, index = 0;         // index: position in the view's list
+  Eigen::Vector2d error_px = Eigen::Vector2d::Zero();  // predicted - measured, edge localisation bias
+                                                       // included; known directions only
   double normalised2 =
       0.0;  // squared, over sigmas, without the displacement field of the view; infinite behind the camera
+  int known_directions = 2;  // onlyKnownDirection: 1
+
   bool inFront() const { return std::isfinite(normalised2); }
 };
 
