@@ -124,6 +124,9 @@ void addBoardCommand(Command& app, int& exit_code) {
   command.option("--radius-m", arguments->radius_m, "Radius of a circle, metres (0.02)");
   command.option("--tag-size-m", arguments->tag_size_m,
                  "Edge of a tag's black square, metres (aprilgrid: spacing / 1.3; charuco: 0.75 spacing)");
+  command.option("--first-tag", arguments->board.first_tag, "Number of an AprilGrid's first tag")
+      .between(0, 586)
+      .showDefault();
   command
       .option("--tag-border", arguments->print.border_bits,
               "Width of the black border of an AprilGrid's tags, bits (2 in Kalibr)")

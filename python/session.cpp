@@ -127,7 +127,8 @@ py::tuple stateOfBoard(const Board& board) {
   std::vector<std::array<double, 2>> given_m;
   for (const Eigen::Vector2d& point_m : board.given_m) given_m.push_back({point_m.x(), point_m.y()});
   return py::make_tuple(boardTypeName(board.type), board.rows, board.cols, board.spacing_m, board.radius_m,
-                        kShades[static_cast<std::size_t>(board.circles)], board.tag_size_m, given_m);
+                        kShades[static_cast<std::size_t>(board.circles)], board.tag_size_m, given_m,
+                        board.first_tag);
 }
 
 Board boardFromMembers(const py::tuple& state) {
@@ -141,11 +142,12 @@ Board boardFromMembers(const py::tuple& state) {
   board.tag_size_m = state[6].cast<double>();
   for (const auto& point_m : state[7].cast<std::vector<std::array<double, 2>>>())
     board.given_m.emplace_back(point_m[0], point_m[1]);
+  board.first_tag = state[8].cast<int>();
   return board;
 }
 
 Board boardFromState(const py::tuple& state) {
-  return restored(state, 8, "Board", boardFromMembers);
+  return restored(state, 9, "Board", boardFromMembers);
 }
 
 Session sessionFromState(const py::tuple& state) {
@@ -179,6 +181,7 @@ void bindBoard(py::module_& module) {
                      "Distance between rows of circles, edge of a square, or distance between tags.")
       .def_readwrite("radius_m", &Board::radius_m, "Radius of the circles.")
       .def_readwrite("tag_size_m", &Board::tag_size_m, "Edge length of a tag's black square.")
+      .def_readwrite("first_tag", &Board::first_tag, "Number of an AprilGrid's first tag.")
       .def_property(
           "circles", [](const Board& b) { return kShades[static_cast<std::size_t>(b.circles)]; },
           [](Board& b, const std::string& shade) {

@@ -26,7 +26,9 @@ const char* windowOutcomeName(WindowOutcome outcome) {
                                                                           "circles lost in refinement",
                                                                           "too blurred",
                                                                           "unreadable",
-                                                                          "rejected by hand"};
+                                                                          "rejected by hand",
+                                                                          "too small in the image",
+                                                                          "other tags between the corners"};
   return kNames[static_cast<std::size_t>(outcome)];
 }
 

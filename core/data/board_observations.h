@@ -61,8 +61,10 @@ enum class WindowOutcome {
   Blurred,           // frame: the board moved too far during the exposure
   Unreadable,        // frame: its picture is damaged
   RejectedByHand,    // the board was found; rejected by a user because of its residuals
+  TooSmall,          // the board was found, but most of its edges are too close together in the image
+  OtherPattern,      // corners were found, but the tags between them are others
 };
-inline constexpr std::size_t kWindowOutcomeCount = 11;
+inline constexpr std::size_t kWindowOutcomeCount = 13;
 const char* windowOutcomeName(WindowOutcome outcome);  // for tables and logs
 
 struct WindowReport {
@@ -103,6 +105,7 @@ struct BoardObservations {
   BoardExtent extent;
   std::uint64_t events = 0;                          // number of events, frames or points read
   std::optional<PolarityDelay> polarity_delay = {};  // of events, if speeds vary enough to determine it
+  double narrowest_px = 0.0;  // largest width in which windows that are TooSmall showed the narrowest dark lines
   double stamp_step_s = 0.0;                         // of events with rounded time stamps; 0: not rounded
 };
 

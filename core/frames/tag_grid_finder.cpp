@@ -120,16 +120,17 @@ class TagGridFinder : public PatternFinder {
     if (mirrored_ >= kEnoughPictures && largest_id_ < 0)
       return "the tags can only be read in the mirror image: the camera's pictures or the printed board are "
              "mirrored";
-    const int span = largest_id_ - smallest_id_ + 1;
-    if (smallest_id_ > 0 && largest_id_ >= tags && (smallest_id_ >= tags || span == tags))
+    const int span = largest_id_ - smallest_id_ + 1, first = board_.first_tag, end = first + tags;
+    const bool others = largest_id_ >= end || (largest_id_ >= 0 && smallest_id_ < first);
+    if (smallest_id_ != first && others && (smallest_id_ >= end || largest_id_ < first || span == tags))
       return fmt::format(
-          "tags {} to {} were detected, but a board of {} x {} tags has tags 0 to {}: this is another board, "
-          "or its numbers do not start at 0",
-          smallest_id_, largest_id_, board_.rows, board_.cols, tags - 1);
-    if (largest_id_ >= tags)
+          "tags {} to {} were detected, but a board of {} x {} tags from {} on has tags up to {}: this is "
+          "another board, or first_tag should be {}",
+          smallest_id_, largest_id_, board_.rows, board_.cols, first, end - 1, smallest_id_);
+    if (others)
       return fmt::format(
-          "tag {} was detected, but a board of {} x {} tags has tags 0 to {}: check rows and columns",
-          largest_id_, board_.rows, board_.cols, tags - 1);
+          "tag {} was detected, but a board of {} x {} tags has tags {} to {}: check rows and columns",
+          largest_id_ >= end ? largest_id_ : smallest_id_, board_.rows, board_.cols, first, end - 1);
     if (misfits_ >= kEnoughPictures && misfits_ > fits_)
       return fmt::format("the detected tags do not fit a board of {} x {} tags: check rows and columns",
                          board_.rows, board_.cols);
@@ -185,7 +186,8 @@ class TagGridFinder : public PatternFinder {
       largest_id_ = std::max(largest_id_, tag.id);
       smallest_id_ = std::min(smallest_id_, tag.id);
     }
-    std::erase_if(tags, [&](const SeenTag& tag) { return tag.id >= tagCount(); });
+    for (SeenTag& tag : tags) tag.id -= board_.first_tag;
+    std::erase_if(tags, [&](const SeenTag& tag) { return tag.id < 0 || tag.id >= tagCount(); });
     return tags;
   }
 

@@ -1,6 +1,7 @@
 #include "core/frontend/board_extent.h"
 
 #include "core/frontend/circle_measurement.h"
+#include "core/frontend/rival_placements.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -61,6 +62,18 @@ Deviation deviationOf(const CircleObservation& circle, const OutlineImage& place
           circle.semi_axes_px.maxCoeff() - 1.0 / std::sqrt(shape.eigenvalues().x())};
 }
 
+void countEnds(std::array<LineState, 2> beyond, std::array<LineState, 2> edges, LatticeEnds& ends) {
+  const auto any = [](const std::array<LineState, 2>& lines, LineState state) {
+    return lines[0] == state || lines[1] == state;
+  };
+  const bool larger = any(beyond, LineState::Present), smaller = any(edges, LineState::Absent);
+  if (larger && smaller) return;
+  ends.beyond_in_view += larger || any(beyond, LineState::Absent) || any(beyond, LineState::Unclear);
+  ends.beyond_seen += larger;
+  ends.edge_in_view += smaller || any(edges, LineState::Present) || any(edges, LineState::Unclear);
+  ends.edge_missing += smaller;
+}
+
 class ExtentJudge {
  public:
   ExtentJudge(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
@@ -94,13 +107,13 @@ class ExtentJudge {
 
   void judgeRows(LatticeEnds& ends) const {
     const int rows = scene_.board.rows;
-    count({beyond(rowOf(scene_, -1)), beyond(rowOf(scene_, rows))},
-          {firstInView(0, 1, rows, true), firstInView(rows - 1, -1, rows, true)}, ends);
+    countEnds({beyond(rowOf(scene_, -1)), beyond(rowOf(scene_, rows))},
+              {firstInView(0, 1, rows, true), firstInView(rows - 1, -1, rows, true)}, ends);
   }
   void judgeColumns(LatticeEnds& ends) const {
     const int cols = scene_.board.cols;
-    count({beyond(columnBeyond(scene_, true)), beyond(columnBeyond(scene_, false))},
-          {firstInView(0, 1, cols, false), firstInView(cols - 1, -1, cols, false)}, ends);
+    countEnds({beyond(columnBeyond(scene_, true)), beyond(columnBeyond(scene_, false))},
+              {firstInView(0, 1, cols, false), firstInView(cols - 1, -1, cols, false)}, ends);
   }
 
  private:
@@ -174,18 +187,6 @@ class ExtentJudge {
     return LineState::OutOfView;
   }
 
-  static void count(std::array<LineState, 2> beyond, std::array<LineState, 2> edges, LatticeEnds& ends) {
-    const auto any = [](const std::array<LineState, 2>& lines, LineState state) {
-      return lines[0] == state || lines[1] == state;
-    };
-    const bool larger = any(beyond, LineState::Present), smaller = any(edges, LineState::Absent);
-    if (larger && smaller) return;
-    ends.beyond_in_view += larger || any(beyond, LineState::Absent) || any(beyond, LineState::Unclear);
-    ends.beyond_seen += larger;
-    ends.edge_in_view += smaller || any(edges, LineState::Present) || any(edges, LineState::Unclear);
-    ends.edge_missing += smaller;
-  }
-
   const BurstWindow& window_;
   const WindowTrace& trace_;
   const BoardScene& scene_;
@@ -194,10 +195,77 @@ class ExtentJudge {
   Eigen::LDLT<Eigen::Matrix<double, 8, 8>> fit_;                // of its information
 };
 
+// The same for corners. A line beyond the board's end has the corners of a larger pattern only if the pattern
+// continues, so that they need no comparison with the board's own.
+class CornerExtentJudge {
+ public:
+  CornerExtentJudge(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
+                    const FrontEndOptions& options)
+      : larger_(scene), options_(options) {
+    larger_.board.rows += 2;
+    larger_.board.cols += 2;
+    larger_.edges = edgesOf(larger_.board, {.blank = true});
+    Eigen::Matrix3d origin = Eigen::Matrix3d::Identity();
+    origin.topRightCorner<2, 1>().setConstant(-scene.board.spacing_m);
+    const BoardMotion motion = shifted(*trace.motion, origin);
+    const double half_s = trace.report.half_width_s;
+    for (const bool of_rows : {true, false})
+      lines_[of_rows].resize(static_cast<std::size_t>(larger_.board.lineCount(of_rows)));
+    const auto count = [&](int corner, int Counts::*what) {
+      for (const bool of_rows : {true, false})
+        ++(lines_[of_rows][static_cast<std::size_t>(larger_.board.lineOf(corner, of_rows))].*what);
+    };
+    for (const CircleObservation& corner :
+         measureCircles(window, motion, larger_, {half_s}, options.tracking))
+      count(corner.circle, &Counts::seen);
+    for (const int corner : circlesExpected(motion, larger_, half_s)) count(corner, &Counts::expected);
+  }
+
+  void judge(bool of_rows, LatticeEnds& ends) const {
+    const std::vector<Counts>& lines = lines_[of_rows];
+    const std::size_t last = lines.size() - 1;
+    countEnds({stateOf(lines.front(), of_rows), stateOf(lines[last], of_rows)},
+              {firstInView(1, last, of_rows), firstInView(last - 1, 0, of_rows)}, ends);
+  }
+
+ private:
+  struct Counts {
+    int expected = 0, seen = 0;
+  };
+
+  LineState stateOf(const Counts& line, bool of_rows) const {
+    const auto in_line =
+        static_cast<double>(larger_.board.pointCount()) / static_cast<double>(lines_[of_rows].size());
+    const double least =
+        std::max<double>(options_.extent.min_circles_beyond, options_.extent.min_line * in_line);
+    if (line.expected < least) return LineState::OutOfView;
+    const double share = static_cast<double>(line.seen) / line.expected;
+    if (share >= options_.extent.min_line) return LineState::Present;
+    return share <= (1.0 - options_.extent.min_line) * 0.5 ? LineState::Absent : LineState::Unclear;
+  }
+  // First line in view from one end of the board inwards, up to the line before `end`.
+  LineState firstInView(std::size_t from, std::size_t end, bool of_rows) const {
+    for (std::size_t k = from; k != end; from < end ? ++k : --k)
+      if (const LineState state = stateOf(lines_[of_rows][k], of_rows); state != LineState::OutOfView)
+        return state;
+    return LineState::OutOfView;
+  }
+
+  BoardScene larger_;
+  const FrontEndOptions& options_;
+  std::array<std::vector<Counts>, 2> lines_;  // of columns and of rows, the board's own ones from 1 on
+};
+
 }  // namespace
 
 void judgeExtent(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
                  const FrontEndOptions& options, BoardExtent& extent) {
+  if (scene.edges) {
+    const CornerExtentJudge judge(window, trace, scene, options);
+    judge.judge(true, extent.rows);
+    judge.judge(false, extent.cols);
+    return;
+  }
   const ExtentJudge judge(window, trace, scene, options);
   judge.judgeRows(extent.rows);
   judge.judgeColumns(extent.cols);

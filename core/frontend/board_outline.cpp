@@ -1,6 +1,7 @@
 #include "core/frontend/board_outline.h"
 
 #include "core/geometry/camera_model.h"
+#include "core/numerics/robust.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -8,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 namespace evical {
 namespace {
@@ -18,7 +21,7 @@ constexpr double kCornerGap_px = 1.5;  // next to the end of an edge, the blur o
 constexpr double kShortest_px = 1.5;   // of what remains of an edge
 // To the next parallel edge, which displaces bursts, too. Light on narrow ink changes its darkness by a large
 // factor, and pixels see factors; on narrow paper it hardly matters.
-constexpr double kMinInk_px = 3.0, kMinPaper_px = 2.0;
+constexpr double kMinPaper_px = 2.0;
 constexpr double kSmallestScale = 0.5;  // of ideal pixels per pixel
 constexpr double kSector_px = 8.0;      // along an edge
 
@@ -167,6 +170,24 @@ std::optional<PointImage> imageOfPoint(const Eigen::Matrix3d& h, const BoardScen
     if (arm) out.outlines[k] = *arm;
   }
   return out;
+}
+
+double narrowestInk_px(const Eigen::Matrix3d& h, const BoardScene& scene) {
+  std::vector<double> widths_px;
+  for (int index = 0; index < scene.board.pointCount(); ++index) {
+    const Eigen::Vector3d corner = h * scene.board.point_m(index).homogeneous();
+    if (!(corner.z() > 0.0)) continue;
+    const Eigen::Vector2d at = corner.hnormalized();
+    const std::optional<SensorPlace> place = sensorPlace(scene, at);
+    if (!place) continue;
+    double ink_m = std::numeric_limits<double>::infinity();
+    for (const PrintedEdge& arm : scene.edges->arms[static_cast<std::size_t>(index)])
+      ink_m = std::min(ink_m, arm.ink_m);
+    const Eigen::Matrix2d px_per_m =
+        (h.topLeftCorner<2, 2>() - at * h.block<1, 2>(2, 0)) / corner.z() / place->scale;
+    widths_px.push_back(ink_m * std::sqrt(std::abs(px_per_m.determinant())));
+  }
+  return medianOf(std::move(widths_px));
 }
 
 bool insideImage(const OutlineImage& circle, Resolution resolution_px) {

@@ -94,6 +94,11 @@ struct PointImage {
 std::optional<PointImage> imageOfPoint(const Eigen::Matrix3d& ideal_from_board, const BoardScene& scene,
                                        int point);
 
+// Narrowest dark line next to the edges of a board's corners in the image, in the sensor's pixels: median;
+// and the limit below which such edges are left out.
+double narrowestInk_px(const Eigen::Matrix3d& ideal_from_board, const BoardScene& scene);
+inline constexpr double kMinInk_px = 3.0;
+
 // True if the whole circle, or the corner and its closest surroundings, are in the image.
 bool insideImage(const PointImage& point, Resolution resolution_px);
 bool insideImage(const OutlineImage& circle, Resolution resolution_px);

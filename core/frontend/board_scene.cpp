@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <mutex>
 #include <utility>
 
 namespace evical {
@@ -99,11 +101,47 @@ BoardEdges::BoardEdges(const Board& board, const TagPrint& print)
   }
 }
 
+std::vector<TagPrint> possiblePrints(const Board& board) {
+  std::vector<TagPrint> prints;
+  switch (board.type) {
+    case BoardType::AprilGrid:
+      for (const int border_bits : {2, 1})
+        for (int quarter_turns = 0; quarter_turns < 4; ++quarter_turns)
+          prints.push_back({.border_bits = border_bits, .quarter_turns = quarter_turns});
+      return prints;
+    case BoardType::Charuco:
+      prints.push_back({});
+      for (const bool first_is_bright : {false, true})
+        for (const std::string& markers : markerNames())
+          if (board.rows * board.cols / 2 <= markerCount(markers) &&
+              (first_is_bright || markers != kUsualMarkers))
+            prints.push_back({.markers = markers, .first_is_bright = first_is_bright});
+      return prints;
+    default:
+      return {TagPrint{}};
+  }
+}
+
+std::shared_ptr<const BoardEdges> edgesOf(const Board& board, const TagPrint& print) {
+  struct Kept {
+    Board board;
+    TagPrint print;
+    std::shared_ptr<const BoardEdges> edges;
+  };
+  constexpr std::size_t kMaxKept = 32;
+  static std::mutex mutex;
+  static std::deque<Kept> all;
+  const std::scoped_lock lock(mutex);
+  for (const Kept& kept : all)
+    if (kept.board == board && kept.print == print) return kept.edges;
+  if (all.size() == kMaxKept) all.pop_front();
+  return all.emplace_back(Kept{board, print, std::make_shared<const BoardEdges>(board, print)}).edges;
+}
+
 BoardScene::BoardScene(const Board& the_board, Resolution resolution,
                        std::optional<CameraIntrinsics> intrinsics)
     : board(the_board), resolution_px(resolution), camera(std::move(intrinsics)) {
-  if (board.hasPattern() && !board.hasCircles())
-    edges = std::make_shared<const BoardEdges>(board, TagPrint{});
+  if (board.hasPattern() && !board.hasCircles()) edges = edgesOf(board, TagPrint{});
   if (camera) pixels = idealPixels(*camera, resolution);
 }
 

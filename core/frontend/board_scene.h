@@ -80,6 +80,11 @@ struct BoardEdges {
 
   BoardEdges(const Board& board, const TagPrint& print);
 };
+// Prints of a board's tags that are possible, the most usual first; one for other boards.
+std::vector<TagPrint> possiblePrints(const Board& board);
+
+// The same for several scenes: the tables of the last boards are kept.
+std::shared_ptr<const BoardEdges> edgesOf(const Board& board, const TagPrint& print);
 
 // Copies are cheap: they share the tables of lens and edges.
 struct BoardScene {
@@ -88,6 +93,7 @@ struct BoardScene {
   std::optional<CameraIntrinsics> camera;
   std::shared_ptr<const IdealPixels> pixels;  // null without a camera: ideal pixels are the sensor's own
   std::shared_ptr<const BoardEdges> edges;    // null for circles
+  bool print_known = false;                   // the edges are of the print, and no other one is tried
 
   BoardScene(const Board& board, Resolution resolution_px, std::optional<CameraIntrinsics> camera);
 

@@ -1,6 +1,7 @@
 #include "core/frontend/board_search.h"
 
 #include "core/frontend/circle_measurement.h"
+#include "core/frontend/pattern_agreement.h"
 #include "core/frontend/ring_vote.h"
 #include "core/frontend/rival_placements.h"
 #include "core/frontend/window_trace.h"
@@ -121,8 +122,9 @@ double measuredHalf_s(const BoardSearch& search, const BoardScene& scene, const 
   return fitHalfWindow_s(boardSpeed_px_s(search.placements.front().motion, scene), options.tracking);
 }
 
-WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene,
+WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& given,
                               const FrontEndOptions& options, BoardSearch& search) {
+  BoardScene scene = given;  // with the print that is found
   const double half_s = measuredHalf_s(search, scene, options);
   std::optional<Judged> best;
   for (const PlacementGroup& group : groupedByCircles(search.placements, scene.board)) {
@@ -138,6 +140,14 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene
     if (!scene.edges && best->measured == scene.board.pointCount()) break;
   }
   if (!best) return WindowOutcome::RefinementFailed;
+  if (scene.edges && scene.board.hasTags()) {
+    const PrintMatch match =
+        matchPrint(best->motion, rivalShifts(scene, options.grid.min_rival_overlap), window, scene, half_s);
+    if (!match.matches) return WindowOutcome::OtherPattern;
+    search.edges = match.edges;
+    best->motion = shifted(best->motion, match.shift);
+    scene.edges = match.edges;
+  }
   const int count = scene.board.pointCount();
   if (scene.edges || best->measured < count) {
     const std::vector<PlacementScore> rivals =
@@ -152,7 +162,9 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& scene
   }
   if (best->measured < std::max<double>(options.grid.min_circles, minPartial(count, options.grid)) ||
       best->missing > options.grid.max_missing * best->measured) {
-    return WindowOutcome::TooFewInGrid;
+    if (scene.edges) search.narrowest_px = narrowestInk_px(best->motion.ideal_from_board, scene);
+    return scene.edges && search.narrowest_px < kMinInk_px ? WindowOutcome::TooSmall
+                                                           : WindowOutcome::TooFewInGrid;
   }
   search.motion = best->motion;
   return best->measured == count ? WindowOutcome::Complete : WindowOutcome::Partial;

@@ -33,6 +33,8 @@ struct BoardSearch {
   CornerLattice corners;                 // and instead of their lattice
   std::vector<BoardPlacement> placements;
   std::optional<BoardMotion> motion;
+  double narrowest_px = 0.0;                // of an outcome TooSmall: narrowestInk_px
+  std::shared_ptr<const BoardEdges> edges;  // of the print that was found, of a board of squares
 };
 
 // One search for each source of candidates that was tried, in order: the options' method first, and the other

@@ -129,8 +129,19 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
   last_search_ns_ = middle_ns;
   const BoardSearch search = searchBoard(history_, middle_ns, scene_, options_).back();
   if (observer_) observer_->windowSearched(search, middle_ns);
+  if (search.outcome == WindowOutcome::TooSmall)
+    observations_.narrowest_px = std::max(observations_.narrowest_px, search.narrowest_px);
+  // Trying all prints takes long. A few windows show whether one of them is the board's.
+  constexpr int kMaxOtherPatterns = 8;
+  if (search.outcome == WindowOutcome::OtherPattern && ++other_patterns_ >= kMaxOtherPatterns)
+    scene_.print_known = true;
   if (search.motion) {
     search_interval_s_ = options_.detection.search_interval_s;
+    scene_.print_known = true;
+    if (search.edges && search.edges != scene_.edges) {
+      scene_.edges = search.edges;
+      placement_watch_ = PlacementWatch(scene_, options_.grid);
+    }
     acquire(slot, *search.motion);
   } else {
     search_interval_s_ =
@@ -175,7 +186,7 @@ void BoardTracker::trackBackwards(const WindowSlot& from, BoardMotion motion) {
 
 WindowTrace BoardTracker::track(const WindowSlot& slot, const BoardMotion& last) {
   WindowTrace trace = trackWindow({history_, scene_, options_, start_ns_}, slot, last, window_);
-  if (trace.held() && !scene_.edges && held_windows_++ % options_.extent.every_windows == 0)
+  if (trace.held() && held_windows_++ % options_.extent.every_windows == 0)
     judgeExtent(window_, trace, scene_, options_, observations_.extent);
   if (observer_) observer_->windowTracked(window_, trace);
   return trace;

@@ -74,6 +74,7 @@ class BoardTracker {
   std::stop_token stop_;
   FrontEndObserver* observer_ = nullptr;
   bool started_ = false;
+  int other_patterns_ = 0;  // searches that found corners, but other tags between them
   int held_windows_ = 0;
   PlacementWatch placement_watch_;
   PolarityDelayFit polarity_delay_;

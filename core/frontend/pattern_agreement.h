@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include <memory>
 #include <vector>
 
 namespace evical {
@@ -17,6 +18,16 @@ namespace evical {
 std::vector<PlacementScore> rivalPatterns(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts,
                                           const BurstWindow& window, const BoardScene& scene,
                                           double half_window_s, const TrackingOptions& options);
+
+// Properties of the print that a session does not state, and the placement, of all those that are possible
+// the ones that agree best.
+struct PrintMatch {
+  std::shared_ptr<const BoardEdges> edges;
+  Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
+  bool matches = false;  // hardly a crossing contradicts
+};
+PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts,
+                      const BurstWindow& window, const BoardScene& scene, double half_window_s);
 
 // Motions of the plane of a board of squares that map its squares onto squares so that at least `min_overlap`
 // of them coincide. The identity is the first; motions that leave the pattern unchanged are left out.

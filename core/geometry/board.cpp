@@ -17,6 +17,7 @@ namespace evical {
 namespace {
 
 constexpr int kTagCorners = 4;
+constexpr int kTagsOfFamily = 587;
 
 Eigen::Vector2d tagCorner_m(const Board& board, int index) {
   static const std::array<Eigen::Vector2d, kTagCorners> kPlaces = {
@@ -96,6 +97,18 @@ int Board::pointCount() const {
     default:
       return rows * cols;
   }
+}
+
+int Board::lineCount(bool of_rows) const {
+  return (of_rows ? rows : cols) - (type == BoardType::Charuco ? 1 : 0);
+}
+
+int Board::lineOf(int index, bool of_rows) const {
+  if (type == BoardType::AprilGrid) {
+    const int tag = index / kTagCorners;
+    return of_rows ? rows - 1 - tag / cols : tag % cols;
+  }
+  return of_rows ? index / pointsInRow() : index % pointsInRow();
 }
 
 Eigen::Vector2d Board::point_m(int row, int col) const {
@@ -194,6 +207,14 @@ void validate(const Board& board) {
   if (!board.hasCircles() && board.radius_m != 0.0)
     throw badInput("board.radius_m", "applies to circles, which this board does not have", "Remove it");
   if (board.hasTags()) validateTags(board);
+  if (board.first_tag != 0 && !tags)
+    throw badInput("board.first_tag", "applies to AprilGrids only", "Remove it");
+  const int end = board.first_tag + board.rows * board.cols;
+  if (tags && (board.first_tag < 0 || end > kTagsOfFamily))
+    throw badInput("board.first_tag",
+                   fmt::format("tags {} to {} are needed, but the family tag36h11 has 0 to {}",
+                               board.first_tag, end - 1, kTagsOfFamily - 1),
+                   "Give the smallest number on the board, and the number of its rows and columns");
 }
 
 int maxSpacings(const Board& board) {

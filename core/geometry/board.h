@@ -41,6 +41,7 @@ struct Board {
   CircleShade circles = CircleShade::Dark;
   double tag_size_m = 0.0;               // edge of a tag's black square: AprilGrid, ChArUco
   std::vector<Eigen::Vector2d> given_m;  // type Points only, by index
+  int first_tag = 0;                     // number of an AprilGrid's first tag; the others follow
 
   bool operator==(const Board&) const = default;
 
@@ -56,6 +57,12 @@ struct Board {
   // Index of circles and of corners between squares; tags' corners do not have one.
   int index(int row, int col) const { return row * pointsInRow() + col; }
   int pointsInRow() const { return type == BoardType::Charuco ? cols - 1 : cols; }
+
+  // Lines of points, or of tags, whose number a session states: rows and cols, or of a ChArUco board one
+  // less.
+  int lineCount(bool of_rows) const;
+  // The one that a point is on.
+  int lineOf(int index, bool of_rows) const;
 
   // Asymmetric circles: ((2 col + row mod 2) s, row s); symmetric ones and corners between squares: (col s,
   // row s).

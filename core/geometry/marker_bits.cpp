@@ -52,6 +52,10 @@ const std::vector<std::string>& markerNames() {
   return names;
 }
 
+int markerCount(const std::string& dictionary) {
+  return dictionaryOf(dictionary)->bytesList.rows;
+}
+
 std::vector<PatternBits> firstMarkers(const std::string& dictionary, int count) {
   const cv::Ptr<cv::aruco::Dictionary> all = dictionaryOf(dictionary);
   if (count > all->bytesList.rows)

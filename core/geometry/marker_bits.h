@@ -15,6 +15,8 @@ using PatternBits = std::vector<std::vector<bool>>;
 inline constexpr const char* kUsualMarkers = "5x5";
 const std::vector<std::string>& markerNames();  // of dictionaries
 
+int markerCount(const std::string& dictionary);
+
 // The first `count` markers by number. Throws CalibrationError (BadInput) if the dictionary does not exist,
 // or has fewer.
 std::vector<PatternBits> firstMarkers(const std::string& dictionary, int count);

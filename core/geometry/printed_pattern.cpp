@@ -63,34 +63,36 @@ PatternBits turned(PatternBits bits, int quarter_turns) {
 }
 
 Boxes tagGrid(const Board& board, const TagPrint& print) {
-  const int needed = board.rows * board.cols;
-  const std::vector<TagBits> tags = firstTags(needed);
-  if (needed > static_cast<int>(tags.size()))
-    throw badInput("board", fmt::format("needs {} tags, but tag36h11 has {}", needed, tags.size()),
-                   "Use fewer rows or columns");
+  const int needed = board.first_tag + board.rows * board.cols;
+  const std::vector<TagBits> tags = firstTags(print.blank ? 0 : needed);
+  if (!print.blank && needed > static_cast<int>(tags.size()))
+    throw badInput("board", fmt::format("needs tags up to {}, but tag36h11 has {}", needed - 1, tags.size()),
+                   "Use fewer rows or columns, or a smaller number of the first tag");
   Boxes boxes;
   const double gap_m = board.spacing_m - board.tag_size_m;
   for (int row = -1; row < board.rows; ++row)
     for (int col = -1; col < board.cols; ++col)
       paintSquare(board.spacing_m * Eigen::Vector2d(col, row) + Eigen::Vector2d::Constant(board.tag_size_m),
                   gap_m, boxes);
-  for (int row = 0; row < board.rows; ++row)
-    for (int col = 0; col < board.cols; ++col)
-      paintTag(board.spacing_m * Eigen::Vector2d(col, row), board.tag_size_m, print.border_bits,
-               turned(bitsOf(tags[static_cast<std::size_t>((board.rows - 1 - row) * board.cols + col)]),
-                      print.quarter_turns),
-               boxes);
+  for (int row = 0; row < board.rows; ++row) {
+    for (int col = 0; col < board.cols; ++col) {
+      const auto tag = static_cast<std::size_t>(board.first_tag + (board.rows - 1 - row) * board.cols + col);
+      const PatternBits bits = print.blank ? PatternBits() : turned(bitsOf(tags[tag]), print.quarter_turns);
+      paintTag(board.spacing_m * Eigen::Vector2d(col, row), board.tag_size_m, print.border_bits, bits, boxes);
+    }
+  }
   return boxes;
 }
 
 Boxes charuco(const Board& board, const TagPrint& print) {
-  const std::vector<BoardSquare> bright = charucoMarkers(board, false);
-  const std::vector<PatternBits> bits = firstMarkers(print.markers, static_cast<int>(bright.size()));
+  const std::vector<BoardSquare> bright = charucoMarkers(board, print.first_is_bright);
+  const std::vector<PatternBits> bits =
+      firstMarkers(print.markers, print.blank ? 0 : static_cast<int>(bright.size()));
   Boxes boxes;
-  for (const BoardSquare& dark : charucoMarkers(board, true))
+  for (const BoardSquare& dark : charucoMarkers(board, !print.first_is_bright))
     paintSquare(squareCorner_m(board, dark), board.spacing_m, boxes);
   const double margin_m = 0.5 * (board.spacing_m - board.tag_size_m);
-  for (std::size_t id = 0; id < bright.size(); ++id)
+  for (std::size_t id = 0; id < bright.size() && !print.blank; ++id)
     paintTag(squareCorner_m(board, bright[id]) + Eigen::Vector2d::Constant(margin_m), board.tag_size_m, 1,
              turned(bits[id], print.quarter_turns), boxes);
   return boxes;

@@ -14,6 +14,8 @@ struct TagPrint {
   int border_bits = 2;                  // AprilGrid: 2 as in Kalibr, or 1
   std::string markers = kUsualMarkers;  // ChArUco board: name of ArUco's dictionary
   int quarter_turns = 0;                // of each tag or marker within its square, clockwise
+  bool first_is_bright = false;         // ChArUco board: of its squares, the top left one
+  bool blank = false;                   // dark tags without bits, bright squares without markers
 
   bool operator==(const TagPrint&) const = default;
 };

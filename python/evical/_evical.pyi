@@ -138,6 +138,7 @@ class Board:
     spacing_m: float
     radius_m: float
     tag_size_m: float
+    first_tag: int
     circles: str
     @property
     def points_m(self) -> _Numbers: ...

@@ -25,6 +25,7 @@ void rememberPrintedBoard(const PrintedBoard& printed) {
   settings.setValue("spacing_m", printed.board.spacing_m);
   settings.setValue("radius_m", printed.board.radius_m);
   settings.setValue("tag_size_m", printed.board.tag_size_m);
+  settings.setValue("first_tag", printed.board.first_tag);
   settings.setValue("bright", printed.board.circles == CircleShade::Bright);
   if (!printed.measured) return;
   settings.setValue("measured/spacings", printed.measured->spacings);
@@ -45,6 +46,7 @@ std::optional<PrintedBoard> lastPrintedBoard() {
   printed.board.spacing_m = settings.value("spacing_m").toDouble();
   printed.board.radius_m = settings.value("radius_m").toDouble();
   printed.board.tag_size_m = settings.value("tag_size_m").toDouble();
+  printed.board.first_tag = settings.value("first_tag").toInt();
   printed.board.circles = settings.value("bright").toBool() ? CircleShade::Bright : CircleShade::Dark;
   if (settings.contains("measured/spacings"))
     printed.measured = MeasuredLength{settings.value("measured/spacings").toInt(),

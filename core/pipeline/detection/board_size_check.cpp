@@ -34,13 +34,13 @@ std::vector<bool> circlesSeen(const BoardObservations& observations, const Board
 // never has such a view. A board of the correct size has some, even if the read-out loses many bursts of
 // events.
 int wholeViews(const BoardObservations& observations, const Board& board, bool rows, double min_line) {
-  const int lines = rows ? board.rows : board.cols, in_line = rows ? board.cols : board.rows;
+  const int lines = board.lineCount(rows), in_line = board.pointCount() / lines;
   const double least = std::max(2.0, min_line * in_line);
   return static_cast<int>(
       std::count_if(observations.views.begin(), observations.views.end(), [&](const BoardView& view) {
         int first = 0, last = 0;
         for (const CircleObservation& circle : view.circles) {
-          const int line = rows ? circle.circle / board.cols : circle.circle % board.cols;
+          const int line = board.lineOf(circle.circle, rows);
           first += line == 0;
           last += line == lines - 1;
         }
@@ -52,10 +52,19 @@ bool contradicted(int against, int looked_at, const ExtentOptions& options) {
   return looked_at >= options.min_views && against > options.max_share * looked_at;
 }
 
-std::string beyondText(const AxisCheck& axis) {
-  return fmt::format(
-      "circles of the same lattice are visible beyond its first or last {} in {:.0f} % of {} views",
-      axis.line, 100.0 * axis.ends.beyond_seen / axis.ends.beyond_in_view, axis.ends.beyond_in_view);
+const char* pointsOf(const Board& board) {
+  return board.hasCircles() ? "circles" : (board.type == BoardType::AprilGrid ? "tags" : "corners");
+}
+
+std::string whatToCheck(const Board& board) {
+  if (board.hasCircles()) return "rows, columns and circles (dark or bright)";
+  return board.hasTags() ? "type, rows, columns and tags" : "type, rows and columns";
+}
+
+std::string beyondText(const AxisCheck& axis, const Board& board) {
+  return fmt::format("{} of the same lattice are visible beyond its first or last {} in {:.0f} % of {} views",
+                     pointsOf(board), axis.line, 100.0 * axis.ends.beyond_seen / axis.ends.beyond_in_view,
+                     axis.ends.beyond_in_view);
 }
 
 std::string missingText(const AxisCheck& axis, std::size_t views) {
@@ -107,20 +116,44 @@ void checkBoardSeen(const BoardObservations& observations, const Board& board,
                               "Correct the board " + howTo(HowTo::EditBoard) +
                                   ", the printed board, or the driver or the key mirrored of the camera "
                                   "accordingly");
+  const auto too_small =
+      std::ranges::count(observations.windows, WindowOutcome::TooSmall, &WindowReport::outcome);
+  if (10 * too_small > static_cast<std::ptrdiff_t>(observations.windows.size()))
+    throw calibrationFailed(
+        observations.camera,
+        fmt::format(
+            "{}: {} at most {:.1f} px wide in the image, and need 3 px", never,
+            board.type == BoardType::AprilGrid ? "the dark borders of its tags are" : "its dark squares are",
+            observations.narrowest_px),
+        "Go closer, or use a board with larger squares or tags: borders of 2 bits are wider than those of 1");
+  const auto other_tags =
+      std::ranges::count(observations.windows, WindowOutcome::OtherPattern, &WindowReport::outcome);
+  if (10 * other_tags > static_cast<std::ptrdiff_t>(observations.windows.size()))
+    throw calibrationFailed(
+        observations.camera,
+        fmt::format("{}: corners of a {} are visible, but the tags between them are others", never,
+                    boardTypeName(board.type)),
+        board.type == BoardType::AprilGrid
+            ? fmt::format("Check rows, columns and first_tag {}. Tags {} to {} of the family tag36h11 are "
+                          "expected, with a border of 1 or 2 bits",
+                          howTo(HowTo::EditBoard), board.first_tag,
+                          board.first_tag + board.rows * board.cols - 1)
+            : fmt::format("Check rows and columns {}. Markers of ArUco's dictionaries are expected, from "
+                          "number 0 on",
+                          howTo(HowTo::EditBoard)));
   int lattices = 0;
   for (const WindowReport& window : observations.windows) {
     lattices += window.outcome == WindowOutcome::TooFewInGrid || window.outcome == WindowOutcome::Ambiguous ||
                 window.outcome == WindowOutcome::RefinementFailed;
   }
   const bool other_board = 5 * lattices > static_cast<int>(observations.windows.size());
-  throw calibrationFailed(observations.camera, never,
-                          other_board ? fmt::format("Rows of circles are visible, but no {} x {} board: "
-                                                    "check rows, columns and circles (dark or bright) {}",
-                                                    board.rows, board.cols, howTo(HowTo::EditBoard))
-                                      : "Check that the board is in view, in focus and moving, and check "
-                                        "rows, columns and circles (dark or bright) " +
-                                            howTo(HowTo::EditBoard) + "; look at the detections " +
-                                            howTo(HowTo::LookAtDetections));
+  throw calibrationFailed(
+      observations.camera, never,
+      other_board
+          ? fmt::format("Rows of {} are visible, but no {} x {} board: check {} {}", pointsOf(board),
+                        board.rows, board.cols, whatToCheck(board), howTo(HowTo::EditBoard))
+          : "Check that the board is in view, in focus and moving, and check " + whatToCheck(board) + " " +
+                howTo(HowTo::EditBoard) + "; look at the detections " + howTo(HowTo::LookAtDetections));
 }
 
 void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options) {
@@ -131,13 +164,15 @@ void checkBoardSize(const BoardObservations& observations, const Board& board, c
   const auto isWhole = [&](bool of_rows) {
     return wholeViews(observations, board, of_rows, options.min_line) >= min_whole;
   };
-  AxisCheck rows{"row", observations.extent.rows, std::vector<bool>(static_cast<std::size_t>(board.rows)),
-                 isWhole(true)};
-  AxisCheck cols{"column", observations.extent.cols, std::vector<bool>(static_cast<std::size_t>(board.cols)),
-                 isWhole(false)};
+  AxisCheck rows{"row", observations.extent.rows,
+                 std::vector<bool>(static_cast<std::size_t>(board.lineCount(true))), isWhole(true)};
+  AxisCheck cols{"column", observations.extent.cols,
+                 std::vector<bool>(static_cast<std::size_t>(board.lineCount(false))), isWhole(false)};
   for (std::size_t k = 0; k < seen.size(); ++k) {
     if (!seen[k]) continue;
-    rows.seen[k / cols.seen.size()] = cols.seen[k % cols.seen.size()] = true;
+    const auto point = static_cast<int>(k);
+    rows.seen[static_cast<std::size_t>(board.lineOf(point, true))] = true;
+    cols.seen[static_cast<std::size_t>(board.lineOf(point, false))] = true;
   }
   bool larger = false, smaller = false;
   std::string text;
@@ -145,7 +180,7 @@ void checkBoardSize(const BoardObservations& observations, const Board& board, c
   for (const AxisCheck* axis : {&rows, &cols}) {
     if (contradicted(axis->ends.beyond_seen, axis->ends.beyond_in_view, options)) {
       larger = true;
-      say(beyondText(*axis));
+      say(beyondText(*axis, board));
     }
     if (!axis->whole && contradicted(axis->ends.edge_missing, axis->ends.edge_in_view, options)) {
       smaller = true;

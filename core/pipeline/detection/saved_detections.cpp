@@ -24,9 +24,10 @@ std::string boardYaml(const Board& board) {
   if (!board.hasPattern())
     return fmt::format("{{type: {}, points_m: {}}}", boardTypeName(board.type), pointsYaml(board));
   return fmt::format(
-      "{{type: {}, rows: {}, cols: {}, spacing_m: {}, radius_m: {}, circles: {}, tag_size_m: {}}}",
+      "{{type: {}, rows: {}, cols: {}, spacing_m: {}, radius_m: {}, circles: {}, tag_size_m: {}{}}}",
       boardTypeName(board.type), board.rows, board.cols, board.spacing_m, board.radius_m,
-      board.circles == CircleShade::Dark ? "dark" : "bright", board.tag_size_m);
+      board.circles == CircleShade::Dark ? "dark" : "bright", board.tag_size_m,
+      board.first_tag == 0 ? "" : fmt::format(", first_tag: {}", board.first_tag));
 }
 
 std::string endsYaml(const LatticeEnds& ends) {

@@ -134,6 +134,7 @@ void readBoard(const YamlNode& detections, Session& session) {
   session.board.spacing_m = map["spacing_m"].real(1e-6, kMax_m, "m");
   session.board.radius_m = map["radius_m"].real(0.0, kMax_m, "m");
   session.board.tag_size_m = map["tag_size_m"].real(0.0, kMax_m, "m");
+  if (const auto node = map.find("first_tag")) session.board.first_tag = node->integer(0, kMax);
 }
 
 // Reads the files of a folder one by one; unreadable ones are noted.

@@ -99,6 +99,7 @@ std::vector<std::string> boardLines(const Board& board, const std::optional<Meas
     lines.push_back(fmt::format("circles: {}", board.circles == CircleShade::Dark ? "dark" : "bright"));
   }
   if (board.tag_size_m > 0.0) lines.push_back(fmt::format("tag_size_m: {}", board.tag_size_m));
+  if (board.first_tag != 0) lines.push_back(fmt::format("first_tag: {}", board.first_tag));
   return lines;
 }
 

@@ -90,6 +90,7 @@ void refuseKalibrKeys(const YamlNode& map) {
 
 Board readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measured,
                 const std::filesystem::path& folder) {
+  constexpr int kMaxTag = 586;  // of the family tag36h11
   refuseKalibrKeys(map);
   Board board;
   board.type = static_cast<BoardType>(map["type"].choice(kBoardTypeNames));
@@ -98,11 +99,12 @@ Board readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measur
                                    "spacing_m", "spacing_std", "blinking"};
   if (board.hasCircles()) keys.insert(keys.end(), {"radius_m", "circles"});
   if (board.hasTags()) keys.emplace_back("tag_size_m");
-  if (board.type == BoardType::AprilGrid) keys.emplace_back("tag_spacing");
+  if (board.type == BoardType::AprilGrid) keys.insert(keys.end(), {"tag_spacing", "first_tag"});
   map.allowOnly(keys);
   board.rows = map["rows"].integer(1, 100);
   board.cols = map["cols"].integer(1, 100);
   if (board.hasTags()) board.tag_size_m = map["tag_size_m"].real(1e-4, 10.0, "m");
+  if (const auto node = map.find("first_tag")) board.first_tag = node->integer(0, kMaxTag);
   board.spacing_m = measured ? measured->spacing_m() : readSpacing_m(map, board.tag_size_m);
   board.radius_m = board.hasCircles() ? map["radius_m"].real(1e-5, 10.0, "m") : 0.0;
   if (const auto node = map.find("circles"))

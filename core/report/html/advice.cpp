@@ -35,6 +35,10 @@ const char* remedy(WindowOutcome outcome) {
       return "Move more smoothly or more slowly: circles are blurred or overlap with other edges.";
     case WindowOutcome::Blurred:
       return "Move more slowly, or use a shorter exposure and more light: frames are blurred.";
+    case WindowOutcome::TooSmall:
+      return "Go closer, or use a board with larger squares or tags.";
+    case WindowOutcome::OtherPattern:
+      return "Check the board's type, its rows and columns, and the numbers of its tags.";
     case WindowOutcome::Unreadable:
       return "Copy the recording again: many of its images are damaged.";
     default:
@@ -44,8 +48,10 @@ const char* remedy(WindowOutcome outcome) {
 
 WindowOutcome mostFrequentLoss(const CameraMeasures& camera) {
   std::size_t worst = static_cast<std::size_t>(WindowOutcome::TooFewEvents);
-  for (std::size_t k = worst; k < static_cast<std::size_t>(WindowOutcome::RejectedByHand); ++k)
-    if (camera.outcomes[k] > camera.outcomes[worst]) worst = k;
+  for (std::size_t k = worst; k < kWindowOutcomeCount; ++k)
+    if (k != static_cast<std::size_t>(WindowOutcome::RejectedByHand) &&
+        camera.outcomes[k] > camera.outcomes[worst])
+      worst = k;
   return static_cast<WindowOutcome>(worst);
 }
 

@@ -12,8 +12,8 @@
 namespace evical::html {
 namespace {
 
-constexpr std::array<const char*, kWindowOutcomeCount> kOutcomeClasses = {"o0", "o1", "o2", "o3", "o4", "o5",
-                                                                          "o6", "o7", "o8", "o9", "o10"};
+constexpr std::array<const char*, kWindowOutcomeCount> kOutcomeClasses = {
+    "o0", "o1", "o2", "o3", "o4", "o5", "o6", "o7", "o8", "o9", "o10", "o11", "o12"};
 
 // Runs of windows with one outcome.
 PlotTable timelineTable(const BoardObservations& camera, std::size_t index) {
@@ -80,7 +80,9 @@ std::string outcomeTable(const CameraMeasures& camera) {
       "circles lost in the joint fit of all circles: blur or clutter",
       "the board moved too far during the exposure of the frame",
       "a damaged image",
-      "the board was found, but the event window was rejected by hand because of its residuals"};
+      "the board was found, but the event window was rejected by hand because of its residuals",
+      "the board's squares, or the borders of its tags, are too narrow in the image",
+      "corners of the board, but the tags between them are not those of the session"};
   std::vector<std::vector<std::string>> rows;
   for (std::size_t k = 0; k < kWindowOutcomeCount; ++k) {
     if (camera.outcomes[k] == 0) continue;

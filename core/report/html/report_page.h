@@ -73,15 +73,15 @@ inline constexpr const char* kReportStyle = R"css(
 :root { --paper: #ffffff; --panel: #f5f6f8; --ink: #1c2330; --muted: #667085; --rule: #d9dde4; --grid: #e8ebf0;
   --c0: #c8402f; --c1: #1f8a5b; --c2: #2f66c8; --ok: #1f8a5b; --doubtful: #b07300; --failed: #c8402f;
   --o1: #8cc9a8; --o2: #b9bfca; --o3: #e0b354; --o4: #d98a4e; --o5: #cf6a6a; --o6: #9a7bc8; --o7: #6b7f99;
-  --o8: #5fa3b8; --o9: #a88b6a; --o10: #8a8f98; }
+  --o8: #5fa3b8; --o9: #a88b6a; --o10: #8a8f98; --o11: #c27ba0; --o12: #b5a642; }
 @media (prefers-color-scheme: dark) { :root { --paper: #14181f; --panel: #1c222c; --ink: #e6eaf1; --muted: #98a2b3;
   --rule: #323a47; --grid: #262d38; --c0: #ff8172; --c1: #4fcf96; --c2: #7fabff; --ok: #4fcf96; --doubtful: #e8b04a;
   --failed: #ff8172; --o1: #3f8a68; --o2: #4a5361; --o3: #b98d35; --o4: #b56c36; --o5: #b35050; --o6: #7a5fa8;
-  --o7: #5a6d87; --o8: #3f8094; --o9: #86694a; --o10: #6b7078; } }
+  --o7: #5a6d87; --o8: #3f8094; --o9: #86694a; --o10: #6b7078; --o11: #a05c80; --o12: #8a7d20; } }
 @media print { :root { --paper: #fff; --panel: #fff; --ink: #000; --muted: #444; --rule: #bbb; --grid: #ddd;
   --c0: #c8402f; --c1: #1f8a5b; --c2: #2f66c8; --ok: #1f8a5b; --doubtful: #b07300; --failed: #c8402f;
   --o1: #8cc9a8; --o2: #b9bfca; --o3: #e0b354; --o4: #d98a4e; --o5: #cf6a6a; --o6: #9a7bc8; --o7: #6b7f99;
-  --o8: #5fa3b8; --o9: #a88b6a; --o10: #8a8f98; }
+  --o8: #5fa3b8; --o9: #a88b6a; --o10: #8a8f98; --o11: #c27ba0; --o12: #b5a642; }
   nav { display: none; } figure, tr, .tile, .verdict { break-inside: avoid; } h2, h3 { break-after: avoid; } }
 * { box-sizing: border-box; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 html { color-scheme: light dark; }
@@ -110,7 +110,7 @@ svg { display: block; max-width: 100%; height: auto; } svg text { font-size: 12p
 .dots { fill: none; stroke: currentColor; stroke-linecap: round; } .faint { opacity: .45; } .fill { fill: currentColor; stroke: none; }
 .key { display: inline-block; width: 12px; height: 10px; margin-right: 7px; background: currentColor; }
 .c0, .warm, .bad { color: var(--c0); } .c1 { color: var(--c1); } .c2, .cold { color: var(--c2); } .ink { color: var(--ink); } .muted { color: var(--muted); }
-.o0 { color: var(--ok); } .o1 { color: var(--o1); } .o2 { color: var(--o2); } .o3 { color: var(--o3); } .o4 { color: var(--o4); } .o5 { color: var(--o5); } .o6 { color: var(--o6); } .o7 { color: var(--o7); } .o8 { color: var(--o8); } .o9 { color: var(--o9); } .o10 { color: var(--o10); }
+.o0 { color: var(--ok); } .o1 { color: var(--o1); } .o2 { color: var(--o2); } .o3 { color: var(--o3); } .o4 { color: var(--o4); } .o5 { color: var(--o5); } .o6 { color: var(--o6); } .o7 { color: var(--o7); } .o8 { color: var(--o8); } .o9 { color: var(--o9); } .o10 { color: var(--o10); } .o11 { color: var(--o11); } .o12 { color: var(--o12); }
 @media (max-width: 640px) { main { padding: 12px 14px 40px; } .wide > svg { min-width: 560px; } .row .wide > svg { min-width: 0; } .verdict { flex-direction: column; gap: 4px; } th, td { padding-right: 12px; } }
 )css";
 

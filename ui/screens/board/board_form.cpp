@@ -102,6 +102,7 @@ BoardForm::BoardForm(QWidget* parent)
           this)),
       length_std_mm_(new NumberField(0.0, 1'000.0, this)),
       tag_mm_(new NumberField(0.1, 10'000.0, this)),
+      first_tag_(countBox(0, tr("Number of the tag at the bottom left; the others follow"), this)),
       circles_(new QComboBox(this)),
       seen_by_(new FormLabel({}, "", this)),
       name_problem_(new FormLabel({}, "problem", this)),
@@ -111,8 +112,8 @@ BoardForm::BoardForm(QWidget* parent)
                    tr("ChArUco"), tr("Points of a table")});
   circles_->addItems({tr("Dark on bright"), tr("Bright on dark")});
   type_->setToolTip(
-      tr("Circles, with or without a shift of every other line by half a step; the other types are for frame "
-         "cameras only"));
+      tr("Event and frame cameras see all types. Of circles, the asymmetric board is the most precise for "
+         "event cameras"));
   spacing_mm_->setToolTip(tr(
       "Asymmetric: distance between two staggered lines, half the distance of neighbours in a "
       "line. Symmetric: distance of neighbours. Checkerboard: a square's edge. Tags: from one to the next"));
@@ -126,6 +127,7 @@ BoardForm::BoardForm(QWidget* parent)
   form_->addRow(tr("Spacing [mm]"), spacing_mm_);
   form_->addRow(tr("Radius [mm]"), radius_mm_);
   form_->addRow(tr("Tag [mm]"), tag_mm_);
+  form_->addRow(tr("First tag"), first_tag_);
   form_->addRow(tr("Circles"), circles_);
   addMore();
   form_->setContentsMargins(0, 0, 4, 0);
@@ -147,6 +149,7 @@ BoardForm::BoardForm(QWidget* parent)
   connect(cols_, &QSpinBox::valueChanged, this, [this] { say("cols"); });
   connect(spacing_mm_, &NumberField::valueEdited, this, [this] { say("spacing_m"); });
   connect(radius_mm_, &NumberField::valueEdited, this, [this] { say("radius_m"); });
+  connect(first_tag_, &QSpinBox::valueChanged, this, [this] { say("first_tag"); });
   connect(tag_mm_, &NumberField::valueEdited, this, [this] { say("tag_size_m"); });
   setBoard({}, {});
   setName({}, {});
@@ -214,7 +217,7 @@ void BoardForm::addMeasure() {
 void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>& measured) {
   board_ = board;
   measured_ = measured;
-  const QSignalBlocker quiet_rows(rows_), quiet_cols(cols_), quiet_spacings(spacings_);
+  const QSignalBlocker quiet_rows(rows_), quiet_cols(cols_), quiet_spacings(spacings_), quiet_tag(first_tag_);
   is_measured_->setChecked(measured.has_value());
   const MeasuredLength length = measured.value_or(overWholeBoard(board));
   length_mm_->setValue(kMmPerM * length.length_m);
@@ -227,6 +230,8 @@ void BoardForm::setBoard(const Board& board, const std::optional<MeasuredLength>
   spacing_mm_->setValue(kMmPerM * board.spacing_m);
   radius_mm_->setValue(kMmPerM * board.radius_m);
   tag_mm_->setValue(kMmPerM * board.tag_size_m);
+  first_tag_->setMaximum(std::max(586, board.first_tag));
+  first_tag_->setValue(board.first_tag);
   circles_->setCurrentIndex(static_cast<int>(board.circles));
   showRows();
   drawing_->setBoard(board);
@@ -268,6 +273,7 @@ void BoardForm::showRows() {
   form_->setRowVisible(radius_mm_, board_.hasCircles());
   form_->setRowVisible(circles_, board_.hasCircles());
   form_->setRowVisible(tag_mm_, board_.hasTags());
+  form_->setRowVisible(first_tag_, board_.type == BoardType::AprilGrid && (more || board_.first_tag != 0));
 }
 
 void BoardForm::say(const QString& field) {
@@ -282,6 +288,7 @@ void BoardForm::say(const QString& field) {
   if (field == "spacing_m") board.spacing_m = spacing_mm_->value() / kMmPerM;
   if (field == "radius_m") board.radius_m = radius_mm_->value() / kMmPerM;
   if (field == "tag_size_m") board.tag_size_m = tag_mm_->value() / kMmPerM;
+  board.first_tag = board.type == BoardType::AprilGrid ? first_tag_->value() : 0;
   board.circles = static_cast<CircleShade>(circles_->currentIndex());
   if (board == board_) return;
   emit edited(board, field);
