@@ -48,11 +48,11 @@ void addCommands(Command& app, int& exit_code) {
 
 int run(int argc, char** argv) {
   CommandLine app(
-      "Calibrates event cameras, frame cameras and IMUs from one recording of a board: a circle grid for "
-      "event "
-      "cameras, for frames also an AprilGrid, checkerboard or ChArUco board. Start with `evical init "
-      "RECORDING "
-      "-o session.yaml`, complete the session, then run `evical calibrate session.yaml -o result`.",
+      "Calibrates event cameras, frame cameras and IMUs from one recording of a board: a circle grid, an "
+      "AprilGrid, a "
+      "checkerboard or a ChArUco board. Start with `evical init RECORDING -o session.yaml`, complete the "
+      "session, then "
+      "run `evical calibrate session.yaml -o result`.",
       "evical");
   app.version(std::string("evical ") + kVersion);
   app.requireCommand();

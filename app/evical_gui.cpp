@@ -81,7 +81,7 @@ std::string manualOf(const QCommandLineParser& parser, const QList<QCommandLineO
 // Exits on --help, --version and unknown options.
 Arguments parse(const QApplication& application) {
   QCommandLineParser parser;
-  parser.setApplicationDescription("Calibrates event cameras with IMUs from one recording of a circle grid.");
+  parser.setApplicationDescription("Calibrates event cameras with IMUs from one recording of a board.");
   const QCommandLineOption help = parser.addHelpOption(), version = parser.addVersionOption();
   parser.addPositionalArgument("file", "Session file, recording, or folder of a result to open",
                                "[SESSION|RECORDING|RESULT]");

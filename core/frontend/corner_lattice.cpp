@@ -321,7 +321,7 @@ struct CornerGrid {
   }
 };
 
-// One way to lay the lattice on the board: a turn and a shift, which keep kinds of corners.
+// One placement of the lattice on the board: a turn and a shift, which keep kinds of corners.
 struct Laying {
   LatticeMap turn;
   int di = 0, dj = 0;

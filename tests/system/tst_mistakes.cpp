@@ -159,7 +159,7 @@ const std::vector<Mistake>& mistakes() {
       {"17 AprilGrid for events", Stage::Events,
        replaced("^board:\n(  .*\n)+",
                 "board:\n  type: aprilgrid\n  rows: 6\n  cols: 6\n  spacing_m: 0.039\n  tag_size_m: 0.03\n"),
-       "moving event camera cannot detect a board of type aprilgrid", "Use a circle grid.*frames"},
+       "board was never found", "[Cc]heck .*type, rows, columns and tags"},
       {"49 spacing ten times too large", Stage::Events, multiplied("spacing_m", 10),
        "spacing_m .0.5 m. is (8|9|10).* times too large: accelerations agree with about 0.0(5|6)",
        "Measure the board"},

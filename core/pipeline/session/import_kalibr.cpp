@@ -115,20 +115,6 @@ void readCameras(const YamlNode& root, const ImportRequest& request, ImportedSes
   }
 }
 
-// A camera that moves detects circles in its events, other boards only in frames.
-bool needsFrames(const Session& session) {
-  return !session.board.hasCircles();
-}
-
-std::string framesNeeded(const Session& session) {
-  return fmt::format("a moving event camera cannot detect a board of type {}",
-                     boardTypeName(session.board.type));
-}
-
-constexpr const char* kOtherWays =
-    "Use a circle grid, record the frames of this sensor, or show the board on a flashing screen (for "
-    "intrinsics only)";
-
 // Names of the streams of a type that no camera has yet; none if the recording cannot be opened.
 std::vector<std::string> freeStreams(const ImportRequest& request, const Session& session, StreamType type) {
   std::vector<std::string> names;
@@ -148,9 +134,11 @@ std::vector<std::string> freeStreams(const ImportRequest& request, const Session
 // For a camera without a topic: the only free stream, or the only one that has the camera's name in its own.
 void findStream(const ImportRequest& request, SessionCamera& camera, ImportedSession& imported) {
   const Session& session = imported.session;
-  std::vector<std::string> all =
-      freeStreams(request, session, needsFrames(session) ? StreamType::Frames : StreamType::Events);
-  if (all.empty() && !needsFrames(session)) all = freeStreams(request, session, StreamType::Frames);
+  // Kalibr calibrates frame cameras by boards of squares.
+  std::array types = {StreamType::Frames, StreamType::Events};
+  if (session.board.hasCircles()) std::swap(types[0], types[1]);
+  std::vector<std::string> all = freeStreams(request, session, types[0]);
+  if (all.empty()) all = freeStreams(request, session, types[1]);
   std::vector<std::string> named;
   for (const std::string& stream : all)
     if (stream.find(camera.name) != std::string::npos) named.push_back(stream);
@@ -158,10 +146,11 @@ void findStream(const ImportRequest& request, SessionCamera& camera, ImportedSes
                                      [](const SessionCamera& other) { return other.stream.empty(); });
   if (named.size() != 1 && (all.size() != 1 || unnamed != 1))
     throw badInput(camera.name, "has no rostopic",
-                   all.empty() ? fmt::format("Add rostopic: with the camera's topic; {} has no stream of {}",
-                                             request.recording.string(),
-                                             needsFrames(session) ? "frames" : "events or frames")
-                               : "Add rostopic: with one of " + joined(all));
+                   all.empty()
+                       ? fmt::format("Add rostopic: with the camera's topic; {} has no stream of events "
+                                     "or frames",
+                                     request.recording.string())
+                       : "Add rostopic: with one of " + joined(all));
   camera.stream = named.size() == 1 ? named.front() : all.front();
   imported.notes.push_back(
       fmt::format("{}: its camchain has no rostopic; the stream {} is used", camera.name, camera.stream));
@@ -172,20 +161,9 @@ void checkStreams(const ImportRequest& request, ImportedSession& imported) {
   Session& session = imported.session;
   const std::vector<std::string> frames = freeStreams(request, {}, StreamType::Frames),
                                  events = freeStreams(request, {}, StreamType::Events);
-  const auto isAmong = [](const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
   for (const SessionCamera& camera : session.cameras) {
     const bool opened = !frames.empty() || !events.empty();
-    const bool has_events =
-        opened ? isAmong(events, camera.stream) : camera.stream.find("events") != std::string::npos;
-    if (needsFrames(session) && has_events)
-      imported.notes.push_back(fmt::format(
-          "warning: {}: {}, but {} has events. {}", camera.name, framesNeeded(session), camera.stream,
-          frames.empty() ? kOtherWays
-                         : fmt::format("Replace its stream {} by the frames of this sensor: {}",
-                                       howTo(HowTo::EditSession), joined(frames))));
-    if (!needsFrames(session) && camera.stream.find("image") != std::string::npos &&
+    if (session.board.hasCircles() && camera.stream.find("image") != std::string::npos &&
         (!opened || !events.empty()))
       imported.notes.push_back(
           fmt::format("{}: {} seems to be an image topic: give the topic of the events {}", camera.name,
@@ -227,20 +205,8 @@ void addRecordedCameras(const ImportRequest& request, ImportedSession& imported)
                        ", whose event streams become the cameras");
   const Inspection inspection = inspectRecording(*openRecording(request.recording));
   Session& session = imported.session;
-  if (!needsFrames(session)) addCamerasOf(StreamType::Events, inspection, imported);
+  addCamerasOf(StreamType::Events, inspection, imported);
   addCamerasOf(StreamType::Frames, inspection, imported);
-  if (session.cameras.empty()) {
-    addCamerasOf(StreamType::Events, inspection, imported);
-    for (const SessionCamera& camera : session.cameras)
-      imported.notes.push_back(
-          fmt::format("warning: {}: {}. {}", camera.name, framesNeeded(session), kOtherWays));
-  } else if (needsFrames(session)) {
-    for (const StreamSummary& stream : inspection.streams)
-      if (isCameraOf(stream, StreamType::Events))
-        imported.notes.push_back(
-            fmt::format("the events of {} are not used: {}. Frames of the same sensor give its lens and pose",
-                        stream.info.name, framesNeeded(session)));
-  }
   if (session.cameras.empty())
     throw badInput(request.recording.string(), "has no stream of events or frames",
                    "Give the recording of the cameras");

@@ -157,12 +157,8 @@ void keepReference(Session& session) {
 Session withMissingSensors(const Session& session, const std::filesystem::path& recording,
                            const Inspection& inspection) {
   Session found = session;
-  // If there are events, frames are not added automatically, unless only they can show the board.
-  const bool frames_first =
-      !session.board.hasCircles() && session.board.hasPattern() && !session.board_blinks;
-  std::array types = {StreamType::Events, StreamType::Frames, StreamType::Points};
-  if (frames_first) std::swap(types[0], types[1]);
-  for (const StreamType type : types)
+  // If there are events, frames are not added automatically.
+  for (const StreamType type : {StreamType::Events, StreamType::Frames, StreamType::Points})
     if (found.cameras.empty()) addSensors(recording, inspection, type, found);
   if (session.imus.empty()) addSensors(recording, inspection, StreamType::Imu, found);
   keepReference(found);

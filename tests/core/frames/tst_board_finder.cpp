@@ -262,8 +262,8 @@ void TestBoardFinder::wrongNumbers_areDoubted_data() {
   later.first_tag = 10;
   QTest::newRow("numbers from 10")
       << later << grid.board << TagBorder::Automatic
-      << "tags 10 to 45 were detected, but a board of 6 x 6 tags has tags 0 to 35: this is another board, or "
-         "its numbers do not start at 0";
+      << "tags 10 to 45 were detected, but a board of 6 x 6 tags from 0 on has tags up to 35: this is another "
+         "board, or first_tag should be 10";
   PrintedBoard mirrored = grid;
   mirrored.mirrored = true;
   QTest::newRow("mirrored") << mirrored << grid.board << TagBorder::Automatic

@@ -388,32 +388,25 @@ class TestImportSession : public QObject {
     }
   }
 
-  // A moving event camera detects circles only.
-  void boardForFrames_takesFramesOrWarns_data() {
+  // Events and frames show all boards.
+  void recordedCameras_areThoseWithEventsOrFrames_data() {
     QTest::addColumn<bool>("circles");
     QTest::addColumn<QStringList>("events");
     QTest::addColumn<QStringList>("frames");
-    QTest::addColumn<QStringList>("cameras");
-    QTest::addColumn<QString>("note");
-    const QStringList e = {"/left/events"}, f = {"/left/image_raw"},
-                      both = {"/left/image_raw", "/right/image_raw"};
-    QTest::newRow("both") << false << e << f << f
-                          << "the events of /left/events are not used: a moving event camera";
-    QTest::newRow("two streams of frames")
-        << false << e << both << both << "events of /left/events are not used";
-    QTest::newRow("frames only") << false << QStringList() << f << f
-                                 << "camera of the stream /left/image_raw";
-    QTest::newRow("events only")
-        << false << e << QStringList() << e
-        << "warning: left: a moving event camera cannot detect a board of type aprilgrid";
-    QTest::newRow("circles") << true << e << f << (e + f) << "camera of the stream /left/events";
+    const QStringList none, e = {"/left/events"}, f = {"/left/image_raw"},
+                            both = {"/left/image_raw", "/right/image_raw"};
+    for (const bool circles : {false, true}) {
+      const char* const board = circles ? "circles" : "tags";
+      QTest::addRow("%s, both", board) << circles << e << f;
+      QTest::addRow("%s, two streams of frames", board) << circles << e << both;
+      QTest::addRow("%s, frames only", board) << circles << none << f;
+      QTest::addRow("%s, events only", board) << circles << e << none;
+    }
   }
-  void boardForFrames_takesFramesOrWarns() {
+  void recordedCameras_areThoseWithEventsOrFrames() {
     QFETCH(bool, circles);
     QFETCH(QStringList, events);
     QFETCH(QStringList, frames);
-    QFETCH(QStringList, cameras);
-    QFETCH(QString, note);
     const auto names = [](const QStringList& list) {
       std::vector<std::string> texts;
       for (const QString& each : list) texts.push_back(each.toStdString());
@@ -427,12 +420,11 @@ class TestImportSession : public QObject {
     const Session session = written(request, notes);
     QStringList streams;
     for (const SessionCamera& camera : session.cameras) streams += QString::fromStdString(camera.stream);
-    QCOMPARE(streams, cameras);
-    QVERIFY2(has(notes, note.toUtf8()), notes.empty() ? "" : notes.back().c_str());
-    QCOMPARE(has(notes, "moving event camera"), !circles && !events.empty());
+    QCOMPARE(streams, events + frames);
+    QVERIFY(has(notes, ("camera of the stream " + streams.front()).toUtf8()));
   }
 
-  void camchainThatNamesEvents_isWarnedOf() {
+  void camchainThatNamesEvents_isTaken() {
     ImportRequest request = kalibr();
     std::string chain = kCamchain;
     chain.replace(chain.find("/davis/image_raw"), 16, "/left/events");
@@ -442,12 +434,11 @@ class TestImportSession : public QObject {
                                  {"/left/events"}, {"/left/image_raw"});
     std::vector<std::string> notes;
     QCOMPARE(written(request, notes).cameras[0].stream, std::string("/left/events"));
-    QVERIFY(has(notes, "warning: cam0: a moving event camera cannot detect a board of type aprilgrid"));
-    QVERIFY(has(notes, "by the frames of this sensor: /left/image_raw"));
+    QVERIFY(!has(notes, "warning"));
     chain.replace(chain.find("/left/events"), 12, "/left/image_raw");
     request.files[1] = write("camchain.yaml", chain);
     written(request, notes);
-    QVERIFY(!has(notes, "moving event camera") && !has(notes, "give the topic of the events"));
+    QVERIFY(!has(notes, "give the topic of the events"));
   }
 
   void camchainWithoutTopics_takesTheStreamsThatFit_data() {
