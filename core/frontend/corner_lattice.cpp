@@ -24,29 +24,26 @@ constexpr std::size_t kNeighbours = 10;
 constexpr double kMaxSideRatio = 2.5;   // of a tilted square
 constexpr double kSeedTolerance = 0.3;  // of the fourth corner, relative to a side
 
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
-}
-
-double cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
+double crossProduct(const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
   return u.x() * v.y() - u.y() * v.x();
 }
 
 bool isOpposite(const SaddleCandidate& a, const SaddleCandidate& b) {
   constexpr double kTolerance_rad = 1.0;
-  return std::abs(wrapped(a.phase_rad - b.phase_rad + std::numbers::pi)) < kTolerance_rad;
+  return std::abs(wrapped_rad(a.phase_rad - b.phase_rad + std::numbers::pi)) < kTolerance_rad;
 }
 
 bool isAlike(const SaddleCandidate& a, const SaddleCandidate& b) {
   constexpr double kTolerance_rad = 1.0;
-  return std::abs(wrapped(a.phase_rad - b.phase_rad)) < kTolerance_rad;
+  return std::abs(wrapped_rad(a.phase_rad - b.phase_rad)) < kTolerance_rad;
 }
 
 // True if ink is between the directions `a` and `b` of a saddle's lines, b being a quarter turn after a.
 bool isDarkBetween(const SaddleCandidate& saddle, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d middle = a.normalized() + b.normalized();
   const double middle_rad = std::atan2(middle.y(), middle.x());
-  return std::abs(wrapped(saddle.phase_rad - (2.0 * middle_rad - std::numbers::pi))) < 0.5 * std::numbers::pi;
+  return std::abs(wrapped_rad(saddle.phase_rad - (2.0 * middle_rad - std::numbers::pi))) <
+         0.5 * std::numbers::pi;
 }
 
 // Distance of a line of corners from the first one.
@@ -277,7 +274,7 @@ CornerLattice findCornerLattice(const std::vector<SaddleCandidate>& saddles,
         const Eigen::Vector2d side_a = saddles[a].at_px - saddles[seed].at_px,
                               side_b = saddles[b].at_px - saddles[seed].at_px;
         const double ratio = side_a.norm() / side_b.norm();
-        if (cross(side_a, side_b) < options.min_sine * side_a.norm() * side_b.norm()) continue;
+        if (crossProduct(side_a, side_b) < options.min_sine * side_a.norm() * side_b.norm()) continue;
         if (ratio > kMaxSideRatio || ratio < 1.0 / kMaxSideRatio) continue;
         const std::optional<std::size_t> c = fourthCorner(saddles, seed, a, b);
         if (!c) continue;

@@ -121,10 +121,6 @@ class SaddleVotes {
   std::vector<float> counts_;
 };
 
-double wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
-}
-
 // Edges on both sides along at least one of the saddle's two lines: corners of single squares have one side
 // only.
 bool hasBothSides(const SaddleCandidate& candidate, const std::vector<const MovedCrossing*>& near,
@@ -138,7 +134,7 @@ bool hasBothSides(const SaddleCandidate& candidate, const std::vector<const Move
                  gradient_rad = std::atan2(static_cast<double>(crossing->to_bright.y()),
                                            static_cast<double>(crossing->to_bright.x()));
     constexpr double kAgrees_rad = 1.0;
-    if (std::abs(wrapped(way_rad + gradient_rad - candidate.phase_rad)) > kAgrees_rad) continue;
+    if (std::abs(wrapped_rad(way_rad + gradient_rad - candidate.phase_rad)) > kAgrees_rad) continue;
     const double first_rad = 0.5 * candidate.phase_rad + 0.25 * std::numbers::pi;
     const auto side = static_cast<int>(std::lround((way_rad - first_rad) / (0.5 * std::numbers::pi)));
     ++sides[static_cast<std::size_t>(((side % 4) + 4) % 4)];

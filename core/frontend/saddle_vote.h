@@ -9,6 +9,8 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace evical {
@@ -20,6 +22,11 @@ struct MovedCrossing {
   Eigen::Vector2f velocity_px_s;  // along the normal
 };
 std::vector<MovedCrossing> crossingsAtMiddle(const BurstWindow& window, const NormalFlowOptions& options);
+
+// An angle within half a turn of 0.
+inline double wrapped_rad(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
+}
 
 struct SaddleCandidate {
   Eigen::Vector2d at_px = Eigen::Vector2d::Zero();

@@ -27,6 +27,7 @@ namespace evical::ui {
 namespace {
 
 constexpr int kOutlinePoints = 40;
+constexpr double kUnknownLine_px = 8.0;
 
 QString tr(const char* text) {
   return QCoreApplication::translate("Layers", text);
@@ -141,6 +142,16 @@ void paintSearch(QPainter& painter, const BoardSearch& search) {
   usePen(painter, layerColour(Layer::Circles));
   for (const MovingCircle& circle : search.circles)
     painter.drawEllipse(toPoint(circle.centre_px), circle.radius_px, circle.radius_px);
+  constexpr double kSaddleRadius_px = 1.5;
+  for (const SaddleCandidate& saddle : search.saddles)
+    painter.drawEllipse(toPoint(saddle.at_px), kSaddleRadius_px, kSaddleRadius_px);
+  for (const CornerNode& a : search.corners.nodes) {
+    for (const CornerNode& b : search.corners.nodes) {
+      const bool next = (b.i == a.i + 1 && b.j == a.j) || (b.i == a.i && b.j == a.j + 1);
+      if (next)
+        painter.drawLine(toPoint(search.saddles[a.saddle].at_px), toPoint(search.saddles[b.saddle].at_px));
+    }
+  }
   for (const LatticeNode& a : search.lattice) {
     for (const LatticeNode& b : search.lattice) {
       const bool next = (b.i == a.i + 1 && b.j == a.j) || (b.i == a.i && b.j == a.j + 1);
@@ -175,6 +186,13 @@ void paintCentres(QPainter& painter, double scale, const WindowAnalysis& analysi
     const QPointF at = toSensor(circle.centre_px, *analysis.scene);
     painter.drawLine(at - QPointF(arm, 0.0), at + QPointF(arm, 0.0));
     painter.drawLine(at - QPointF(0.0, arm), at + QPointF(0.0, arm));
+    if (const auto known = onlyKnownDirection(circle.covariance_px2)) {
+      // A line along the direction in which the corner is unknown.
+      const Eigen::Vector2d half = kUnknownLine_px * known->unitOrthogonal();
+      painter.drawLine(toSensor(circle.centre_px - half, *analysis.scene),
+                       toSensor(circle.centre_px + half, *analysis.scene));
+      continue;
+    }
     painter.drawPolygon(ellipse(circle.centre_px, circle.covariance_px2, kShownSigmas, *analysis.scene));
   }
 }

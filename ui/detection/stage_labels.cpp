@@ -99,6 +99,10 @@ const char* sourceName(CandidateSource source) {
   return source == CandidateSource::RingVote ? "ring vote" : "normal flow";
 }
 
+const char* pointsName(const Board& board) {
+  return board.hasCircles() ? "circles" : "corners";
+}
+
 std::string candidateText(const BoardSearch& search, const NormalFlowStages& arcs) {
   const int candidates = static_cast<int>(search.candidates.size());
   if (search.source != CandidateSource::NormalFlow || arcs.flow.empty())
@@ -110,25 +114,31 @@ std::string candidateText(const BoardSearch& search, const NormalFlowStages& arc
                arcs.pairs.size());
 }
 
-std::string placementText(const BoardSearch& search) {
+std::string placementText(const BoardSearch& search, const Board& board) {
   if (search.placements.empty()) return "no placement of the lattice on the board is geometrically possible";
-  return print("%zu placements of the lattice on the board, the best with %zu circles",
-               search.placements.size(), search.placements.front().circles.size());
+  return print("%zu placements of the lattice on the board, the best with %zu %s", search.placements.size(),
+               search.placements.front().circles.size(), pointsName(board));
 }
 
 std::string jointText(const BoardSearch& search, const WindowAnalysis& analysis, const GridOptions& options) {
   const int count = analysis.scene->board.pointCount();
+  const char* const points = pointsName(analysis.scene->board);
   switch (search.outcome) {
     case WindowOutcome::Ambiguous:
-      return print("another placement explains nearly as many circles (ambiguity_margin is %d)",
+      return print("another placement explains nearly as many %s (ambiguity_margin is %d)", points,
                    options.ambiguity_margin);
     case WindowOutcome::RefinementFailed:
-      return "no placement passes the joint fit of all circles";
+      return print("no placement passes the joint fit of all %s", points);
+    case WindowOutcome::OtherPattern:
+      return "the tags between the corners are not those of the session";
+    case WindowOutcome::TooSmall:
+      return print("the narrowest dark lines are %.1f px wide (%.0f px needed)", search.narrowest_px,
+                   kMinInk_px);
     case WindowOutcome::TooFewInGrid:
       return print(
-          "too few of the %d circles are confirmed, or too many visible ones are missing (%.0f %% "
+          "too few of the %d %s are confirmed, or too many visible ones are missing (%.0f %% "
           "needed, max_missing is %.2f)",
-          count, 100.0 * options.min_partial, options.max_missing);
+          count, points, 100.0 * options.min_partial, options.max_missing);
     default:
       break;
   }
@@ -148,27 +158,34 @@ void addSearchStages(const BoardSearch& search, const WindowAnalysis& analysis,
   add(SearchStage::Bursts, "edge bursts",
       print("%d within \u00b1%.1f ms (at least %d needed)", search.bursts, 1e3 * search.half_window_s,
             options.detection.min_window_bursts));
-  add(SearchStage::Candidates, "candidates", candidateText(search, analysis.flow.arcs));
-  add(SearchStage::Circles, "moving circles",
-      print("%zu of %zu candidates are moving circles (at least %d needed)", search.circles.size(),
-            search.candidates.size(), options.grid.min_circles));
+  const Board& board = analysis.scene->board;
+  if (board.hasCircles()) {
+    add(SearchStage::Candidates, "candidates", candidateText(search, analysis.flow.arcs));
+    add(SearchStage::Circles, "moving circles",
+        print("%zu of %zu candidates are moving circles (at least %d needed)", search.circles.size(),
+              search.candidates.size(), options.grid.min_circles));
+  } else {
+    add(SearchStage::Circles, "corners",
+        print("%zu places where two dark and two bright fields meet (at least %d needed)",
+              search.saddles.size(), options.grid.min_circles));
+  }
   add(SearchStage::Lattice, "lattice",
-      print("%zu circles in one lattice (at least %d needed)", search.lattice.size(),
-            options.grid.min_circles));
-  add(SearchStage::Placement, "placement", placementText(search));
+      print("%zu %s in one lattice (at least %d needed)", search.lattice.size() + search.corners.nodes.size(),
+            pointsName(board), options.grid.min_circles));
+  add(SearchStage::Placement, "placement", placementText(search, board));
   add(SearchStage::JointFit, "joint fit", jointText(search, analysis, options.grid));
 }
 
-std::string trackingText(const WindowTrace& trace, const FrontEndOptions& options) {
+std::string trackingText(const WindowTrace& trace, const Board& board, const FrontEndOptions& options) {
   switch (trace.ended) {
     case TrackingEnd::NoFit:
       return "too few bursts at the predicted edges";
     case TrackingEnd::TooFewCircles:
-      return print("too few circles at the predicted places: %zu (at least %d needed)", trace.circles.size(),
-                   options.grid.min_circles);
+      return print("too few %s at the predicted places: %zu (at least %d needed)", pointsName(board),
+                   trace.circles.size(), options.grid.min_circles);
     case TrackingEnd::TooFewOfExpected:
-      return print("too few circles at the predicted places: %zu of %d visible ones (%.0f %% needed)",
-                   trace.circles.size(), trace.expected, 100.0 * kMinExpected);
+      return print("too few %s at the predicted places: %zu of %d visible ones (%.0f %% needed)",
+                   pointsName(board), trace.circles.size(), trace.expected, 100.0 * kMinExpected);
     case TrackingEnd::Held:
       break;
   }
@@ -187,7 +204,7 @@ void addTracking(const WindowAnalysis& analysis, const FrontEndOptions& options,
                                          : print("from the view %.1f ms %s: ", std::abs(gap_ms),
                                                  gap_ms > 0.0 ? "before" : "after");
   stages.push_back({"prediction", trace.held() ? StageVerdict::Passed : StageVerdict::Failed,
-                    from + trackingText(trace, options)});
+                    from + trackingText(trace, analysis.scene->board, options)});
 }
 
 // Numbers of the circles without a centre, and the reasons, unless they are many.
@@ -223,9 +240,16 @@ void addCentres(const WindowAnalysis& analysis, const GridOptions& options,
     return;
   }
   std::vector<double> sigmas;
-  for (const CircleObservation& circle : trace.circles)
-    sigmas.push_back(std::sqrt(0.5 * circle.covariance_px2.trace()));
-  std::string text = print("%zu of %d circles measured", trace.circles.size(), count);
+  int half_known = 0;
+  for (const CircleObservation& circle : trace.circles) {
+    if (onlyKnownDirection(circle.covariance_px2))
+      ++half_known;
+    else
+      sigmas.push_back(std::sqrt(0.5 * circle.covariance_px2.trace()));
+  }
+  std::string text =
+      print("%zu of %d %s measured", trace.circles.size(), count, pointsName(analysis.scene->board));
+  if (half_known > 0) text += print(", %d of them across one line only", half_known);
   if (!sigmas.empty()) text += print(", sigma %.3f px", medianOf(std::move(sigmas)));
   const bool good = windowClass(analysis.outcome) != WindowClass::Missed;
   if (analysis.outcome == WindowOutcome::TooFewInGrid)

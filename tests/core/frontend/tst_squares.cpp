@@ -73,7 +73,7 @@ CornerErrors errorsOf(const Scenario& scenario, const BoardObservations& observa
   const SinusoidMotion motion(scenario);
   struct Known {
     Eigen::Vector2d error, lead;  // whitened; zero along unknown directions
-    double px;
+    Eigen::Vector2d px, lead_px;  // along known directions
   };
   std::vector<Known> all;
   double directions = 0.0, by_lead = 0.0, leads = 0.0;
@@ -90,18 +90,24 @@ CornerErrors errorsOf(const Scenario& scenario, const BoardObservations& observa
           corner.covariance_px2.llt().matrixL().solve(Eigen::Matrix2d::Identity());
       const auto known = onlyKnownDirection(corner.covariance_px2);
       directions += known ? 1.0 : 2.0;
-      all.push_back({whitening * error, whitening * corner.edge_localisation_bias_effect,
-                     known ? std::abs(known->dot(error)) : error.norm()});
+      const auto knownPart = [&](const Eigen::Vector2d& of) -> Eigen::Vector2d {
+        return known ? Eigen::Vector2d(known->dot(of) * *known) : of;
+      };
+      const Eigen::Vector2d& lead = corner.edge_localisation_bias_effect;
+      all.push_back({whitening * error, whitening * lead, knownPart(error), knownPart(lead)});
       by_lead += all.back().lead.dot(all.back().error);
       leads += all.back().lead.squaredNorm();
-      errors.rms_px += all.back().px * all.back().px;
-      errors.max_px = std::max(errors.max_px, all.back().px);
       ++errors.corners;
     }
   }
   // Bursts lead their edges by the same length everywhere, which the estimator determines.
   const double lead_px = by_lead / std::max(leads, 1e-12);
-  for (const Known& each : all) errors.in_sigmas += (each.error - lead_px * each.lead).squaredNorm();
+  for (const Known& each : all) {
+    const double left_px = (each.px - lead_px * each.lead_px).norm();
+    errors.in_sigmas += (each.error - lead_px * each.lead).squaredNorm();
+    errors.rms_px += left_px * left_px;
+    errors.max_px = std::max(errors.max_px, left_px);
+  }
   errors.rms_px = std::sqrt(errors.rms_px / std::max(directions, 1.0));
   errors.in_sigmas = std::sqrt(errors.in_sigmas / std::max(directions, 1.0));
   return errors;

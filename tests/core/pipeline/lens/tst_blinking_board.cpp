@@ -95,8 +95,9 @@ class TestBlinkingBoard : public QObject {
   void cornersBeforeAnEventCamera_areToldHowToBlink() {
     Session other = session();
     other.board_blinks = false;
-    const QString error = errorOf([&] { calibrateIntrinsics(other, 0, RunContext{}); }, ErrorKind::BadInput);
-    QVERIFY2(error.contains("checkerboard") && error.contains("blinking: true"), qPrintable(error));
+    const QString error =
+        errorOf([&] { calibrateIntrinsics(other, 0, RunContext{}); }, ErrorKind::CalibrationFailed);
+    QVERIFY2(error.contains("something blinks at") && error.contains("blinking: true"), qPrintable(error));
   }
 
   void blinkThatTheSessionDoesNotSay_isNoticed() {
