@@ -105,8 +105,9 @@ struct BoardObservations {
   BoardExtent extent;
   std::uint64_t events = 0;                          // number of events, frames or points read
   std::optional<PolarityDelay> polarity_delay = {};  // of events, if speeds vary enough to determine it
-  double narrowest_px = 0.0;  // largest width in which windows that are TooSmall showed the narrowest dark lines
-  double stamp_step_s = 0.0;                         // of events with rounded time stamps; 0: not rounded
+  double narrowest_px =
+      0.0;  // largest width in which windows that are TooSmall showed the narrowest dark lines
+  double stamp_step_s = 0.0;  // of events with rounded time stamps; 0: not rounded
 };
 
 }  // namespace evical

@@ -260,10 +260,10 @@ void TestBoardFinder::wrongNumbers_areDoubted_data() {
   QTest::newRow("right") << grid << grid.board << TagBorder::Two << "";
   PrintedBoard later = grid;
   later.first_tag = 10;
-  QTest::newRow("numbers from 10")
-      << later << grid.board << TagBorder::Automatic
-      << "tags 10 to 45 were detected, but a board of 6 x 6 tags from 0 on has tags up to 35: this is another "
-         "board, or first_tag should be 10";
+  QTest::newRow("numbers from 10") << later << grid.board << TagBorder::Automatic
+                                   << "tags 10 to 45 were detected, but a board of 6 x 6 tags from 0 on has "
+                                      "tags up to 35: this is another "
+                                      "board, or first_tag should be 10";
   PrintedBoard mirrored = grid;
   mirrored.mirrored = true;
   QTest::newRow("mirrored") << mirrored << grid.board << TagBorder::Automatic

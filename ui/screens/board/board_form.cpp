@@ -102,8 +102,8 @@ BoardForm::BoardForm(QWidget* parent)
           this)),
       length_std_mm_(new NumberField(0.0, 1'000.0, this)),
       tag_mm_(new NumberField(0.1, 10'000.0, this)),
-      first_tag_(countBox(0, tr("Number of the tag at the bottom left; the others follow"), this)),
       circles_(new QComboBox(this)),
+      first_tag_(countBox(0, tr("Number of the tag at the bottom left; the others follow"), this)),
       seen_by_(new FormLabel({}, "", this)),
       name_problem_(new FormLabel({}, "problem", this)),
       problem_(wrappedLabel({}, "problem", this)),
@@ -127,7 +127,6 @@ BoardForm::BoardForm(QWidget* parent)
   form_->addRow(tr("Spacing [mm]"), spacing_mm_);
   form_->addRow(tr("Radius [mm]"), radius_mm_);
   form_->addRow(tr("Tag [mm]"), tag_mm_);
-  form_->addRow(tr("First tag"), first_tag_);
   form_->addRow(tr("Circles"), circles_);
   addMore();
   form_->setContentsMargins(0, 0, 4, 0);
@@ -196,6 +195,7 @@ void BoardForm::addMore() {
   blinks_->setToolTip(
       tr("For the intrinsics of one event camera at rest. Any type of board is suitable if it "
          "flashes."));
+  form_->addRow(tr("First tag"), first_tag_);
   form_->addRow(blinks_);
   connect(blinks_, &QCheckBox::clicked, this, &BoardForm::blinkingChosen);
 }

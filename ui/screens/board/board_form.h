@@ -70,8 +70,8 @@ class BoardForm : public QWidget {
   QSpinBox* spacings_;
   NumberField* length_std_mm_;
   NumberField* tag_mm_;
-  QSpinBox* first_tag_;
   QComboBox* circles_;
+  QSpinBox* first_tag_;
   QLabel *seen_by_, *name_problem_, *problem_;
   BoardDrawing* drawing_;
 };
