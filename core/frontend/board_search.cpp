@@ -140,19 +140,18 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& given
     if (!scene.edges && best->measured == scene.board.pointCount()) break;
   }
   if (!best) return WindowOutcome::RefinementFailed;
-  if (scene.edges && scene.board.hasTags()) {
-    const PrintMatch match =
-        matchPrint(best->motion, rivalShifts(scene, options.grid.min_rival_overlap), window, scene, half_s);
-    if (!match.matches) return WindowOutcome::OtherPattern;
-    search.edges = match.edges;
-    best->motion = shifted(best->motion, match.shift);
-    scene.edges = match.edges;
-  }
   const int count = scene.board.pointCount();
   if (scene.edges || best->measured < count) {
+    const std::vector<Eigen::Matrix3d> shifts = rivalShifts(scene, options.grid.min_rival_overlap);
+    if (scene.edges && scene.board.hasTags()) {
+      const PrintMatch match = matchPrint(best->motion, shifts, window, scene, half_s);
+      if (!match.matches) return WindowOutcome::OtherPattern;
+      search.edges = match.edges;
+      best->motion = shifted(best->motion, match.shift);
+      scene.edges = match.edges;
+    }
     const std::vector<PlacementScore> rivals =
-        rivalPlacements(best->motion, rivalShifts(scene, options.grid.min_rival_overlap), window, scene,
-                        half_s, options.tracking);
+        rivalPlacements(best->motion, shifts, window, scene, half_s, options.tracking);
     const PlacementScore& first = rivals.front();
     best = shiftedTo(first, *best, window, scene, half_s, options);
     if ((scene.edges || best->measured < count) && rivals.size() > 1 &&

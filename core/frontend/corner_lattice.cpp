@@ -287,7 +287,7 @@ CornerLattice findCornerLattice(const std::vector<SaddleCandidate>& saddles,
         for (int first_line = 0; first_line <= (tags ? 1 : 0); ++first_line) {
           std::vector<CornerNode> nodes = growth.from({seed, a, *c, b}, first_line);
           if (nodes.size() <= best.nodes.size()) continue;
-          best = {std::move(nodes), (first_line % 2 == 0) == dark || tags};
+          best = {std::move(nodes), dark};
         }
       }
     }
@@ -318,10 +318,8 @@ struct CornerGrid {
   }
 };
 
-// One placement of the lattice on the board: a turn and a shift, which keep kinds of corners.
+// The corners of one placement of the lattice on the board: a turn and a shift, which keep kinds of corners.
 struct Laying {
-  LatticeMap turn;
-  int di = 0, dj = 0;
   std::vector<std::pair<int, std::size_t>> points;  // point of the board, saddle
 };
 
@@ -348,7 +346,7 @@ std::vector<Laying> layingsOf(const CornerLattice& lattice, const Board& board) 
         const bool ends_i = kLatticeTurns[turn][0] + kLatticeTurns[turn][1] < 0,
                    ends_j = kLatticeTurns[turn][2] + kLatticeTurns[turn][3] < 0;
         if (tags && ((di % 2 != 0) != ends_i || (dj % 2 != 0) != ends_j)) continue;
-        Laying laying{kLatticeTurns[turn], di, dj, {}};
+        Laying laying;
         for (std::size_t k = 0; k < places.size(); ++k) {
           const int i = places[k].first + di, j = places[k].second + dj;
           if (i < 0 || j < 0 || i >= grid.columns || j >= grid.rows) continue;
@@ -363,7 +361,8 @@ std::vector<Laying> layingsOf(const CornerLattice& lattice, const Board& board) 
   return layings;
 }
 
-// The plane flow of the crossings within a box, each of which measures it along its normal.
+// The plane flow of the crossings within a box, each of which measures it along its normal. Errors are
+// relative to the speed.
 PlaneFlow flowOf(const std::vector<MovedCrossing>& crossings, const BoardScene& scene,
                  const ImageFrame& frame, double reach_px) {
   constexpr int kRounds = 6;
@@ -389,7 +388,6 @@ PlaneFlow flowOf(const std::vector<MovedCrossing>& crossings, const BoardScene& 
       matrix += w * a * a.transpose();
       vector += w * speed * a;
     }
-    // In units of relative errors.
     flow = matrix.ldlt().solve(vector);
   }
   return flow;

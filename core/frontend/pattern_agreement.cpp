@@ -114,7 +114,8 @@ PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d
   };
   consider(scene.edges);
   if (best.matches || scene.print_known) return best;
-  for (const TagPrint& print : possiblePrints(scene.board)) consider(edgesOf(scene.board, print));
+  for (const TagPrint& print : possiblePrints(scene.board))
+    if (const auto edges = edgesOf(scene.board, print); edges != scene.edges) consider(edges);
   return best;
 }
 

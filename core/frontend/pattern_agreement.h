@@ -1,5 +1,5 @@
-// How well the edges of a whole board of squares, the bits of its tags included, agree with the crossings of
-// a window: decides between placements that have the same corners.
+// Agreement of the edges of a whole board of squares, the bits of its tags included, with the crossings of a
+// window. It decides between placements that have the same corners.
 #pragma once
 
 #include "core/frontend/board_motion.h"

@@ -46,7 +46,7 @@ Scenario davis346Before(const Board& board, const TagPrint& print) {
   return scenario;
 }
 
-// What the front end finds of `shown` if the session states another board.
+// The front end's observations of `shown` if the session states this board.
 BoardObservations detect(const Scenario& shown, const Board& stated) {
   const CameraIntrinsics& lens = shown.cameras[0].intrinsics;
   BoardTracker tracker(stated, lens.resolution_px, lens, FrontEndOptions(), shown.start_ns);
