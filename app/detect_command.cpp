@@ -67,7 +67,7 @@ void printOutcome(const BoardObservations& camera, bool has_lens) {
   if (camera.kind == CameraKind::Events && !has_lens &&
       countOf(WindowOutcome::Partial) > countOf(WindowOutcome::Complete))
     print(
-        "  Without intrinsics, lens distortion hides circles near the border of the image. `evical "
+        "  Without intrinsics, lens distortion hides points near the border of the image. `evical "
         "calibrate` "
         "calibrates the lens first, and then finds more of them.\n");
 }

@@ -102,7 +102,7 @@ void checkViews(const CameraData& camera, const CameraPoses& found, const Initia
   if (static_cast<int>(found.poses.size()) < options.min_views) {
     throw calibrationFailed(
         camera.name,
-        fmt::format("the circles fit the board in {} of {} views, but {} are needed; the median error is "
+        fmt::format("the points fit the board in {} of {} views, but {} are needed; the median error is "
                     "{:.2f} px (at most {:.2f} px is allowed)",
                     found.poses.size(), views, options.min_views, found.median_reprojection_px,
                     options.max_reprojection_px),

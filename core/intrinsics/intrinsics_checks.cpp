@@ -202,7 +202,7 @@ void judge(bool converged, const IntrinsicsOptions& options, IntrinsicsResult& r
     reasons.push_back(fmt::format("no views reach the {} {} of the image", joinedInWords(sides),
                                   sides.size() == 1 ? "side" : "sides"));
   if (result.circles_rejected > result.circles_used)
-    reasons.emplace_back("most circles do not fit (check the board's type, spacing and radius)");
+    reasons.emplace_back("most points do not fit (check the board's type, spacing and radius)");
   result.status = reasons.empty() ? CalibrationStatus::Ok : CalibrationStatus::Doubtful;
   result.reason = joinedInWords(reasons);
 }

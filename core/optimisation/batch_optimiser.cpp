@@ -401,10 +401,10 @@ void Batch::reportNotes() {
         fmt::format("{}: there is hardly any {} along {} of 3 axes; {} for them", imu, motion, axes, what));
   };
   for (std::size_t i = 0; i < input_.cameras.size(); ++i) {
-    say(input_.cameras[i].name, "the spread of circle centres", solution_.scales.circles[i]);
+    say(input_.cameras[i].name, "the spread of points", solution_.scales.circles[i]);
     const CameraFit& fit = solution_.cameras[i];
     if (fit.circles_rejected > 0) {
-      solution_.notes.push_back(fmt::format("{}: {} of {} circles were rejected as outliers",
+      solution_.notes.push_back(fmt::format("{}: {} of {} points were rejected as outliers",
                                             input_.cameras[i].name, fit.circles_rejected,
                                             fit.circles_rejected + fit.circles_used));
     }

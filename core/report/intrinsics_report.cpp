@@ -135,15 +135,14 @@ std::string intrinsicsTable(const NamedIntrinsics& named) {
   if (r.edge_localisation_bias_std_px > 0.0)
     text += fmt::format("    {:<26}{:>12.4f} +- {:.4f} px\n", "edge localisation bias",
                         r.edge_localisation_bias_px, r.edge_localisation_bias_std_px);
-  text +=
-      fmt::format("    {:<26}{:>12} of {}, {} circles, {} rejected; tilted by up to {:.0f} deg\n", "views",
-                  r.views_used, r.views_found, r.circles_used, r.circles_rejected, r.largest_tilt_deg);
+  text += fmt::format("    {:<26}{:>12} of {}, {} points, {} rejected; tilted by up to {:.0f} deg\n", "views",
+                      r.views_used, r.views_found, r.circles_used, r.circles_rejected, r.largest_tilt_deg);
   if (named.story.tried.size() > 1)
     for (const TriedModel& tried : named.story.tried)
-      text += fmt::format("    {:<26}{:>12.2f} times their sigmas, {} of {} circles\n",
+      text += fmt::format("    {:<26}{:>12.2f} times their sigmas, {} of {} points\n",
                           fmt::format("errors, {}", cameraModelName(tried.model)), tried.spread_sigma,
                           tried.circles_used, tried.circles);
-  text += "Circles by part of the image (. none, - few, + some, # many):\n" + coveragePicture(r.image);
+  text += "Points by part of the image (. none, - few, + some, # many):\n" + coveragePicture(r.image);
   for (const std::string& advice : r.advice) text += fmt::format("Advice: {}\n", advice);
   text += fmt::format("Time: {:.1f} s in {} pass{}\nVerdict: {}", r.elapsed_s, r.passes,
                       r.passes == 1 ? "" : "es", statusName(r.status));

@@ -74,7 +74,7 @@ std::string cameraTable(const NamedResult& named, std::size_t i) {
   text += fmt::format("    {:<26}{:>12.4f} px RMS, {:.2f} times its sigmas\n", "reprojection",
                       fit.reprojection_rms_px, fit.normalised_rms);
   if (fit.neighbour_agreement > 0.0)
-    text += fmt::format("    {:<26}{:>12.2f} correlation of neighbouring circles in a window\n",
+    text += fmt::format("    {:<26}{:>12.2f} correlation of neighbouring points in a window\n",
                         "errors agree", fit.neighbour_agreement);
   const int found = fit.windows_complete + fit.windows_partial;
   return text +

@@ -211,11 +211,11 @@ class TestDetectionScreen : public QObject {
         if (box->text() == name) return box->isVisible();
       return false;
     };
-    for (const char* const name : {"Ellipses", "Centres", "Grid", "Prediction"}) QVERIFY(offered(name));
+    for (const char* const name : {"Outlines", "Points", "Grid", "Prediction"}) QVERIFY(offered(name));
     for (const char* const name : {"Flow vectors", "Pairs", "Reprojection"}) QVERIFY(!offered(name));
     auto* const more = screen.findChild<QToolButton*>("more_layers");
     more->click();
-    for (const char* const name : {"Ellipses", "Flow vectors", "Pairs", "Reprojection"})
+    for (const char* const name : {"Outlines", "Flow vectors", "Pairs", "Reprojection"})
       QVERIFY(offered(name));
     screen.setLayerVisible(Layer::Pairs, true);
     more->click();

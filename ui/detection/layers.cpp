@@ -307,13 +307,15 @@ LayerWords layerWords(Layer layer) {
     case Layer::Pairs:
       return {tr("Pairs"), tr("A leading and a trailing arc of the same circle")};
     case Layer::Circles:
-      return {tr("Search"), tr("Candidates (dotted), moving circles, and the lattice formed by them")};
+      return {tr("Search"),
+              tr("Candidates (dotted), moving circles or corners, and the lattice formed by them")};
     case Layer::Ellipses:
-      return {tr("Ellipses"), tr("The fitted board, and the edge bursts on it")};
+      return {tr("Outlines"), tr("The fitted board, and the edge bursts on it")};
     case Layer::Centres:
-      return {tr("Centres"), tr("Measured centres, with covariance ellipses of %1 sigma").arg(kShownSigmas)};
+      return {tr("Points"),
+              tr("Measured centres or corners, with covariance ellipses of %1 sigma").arg(kShownSigmas)};
     case Layer::Grid:
-      return {tr("Grid"), tr("Measured circles in the board's order, with their numbers")};
+      return {tr("Grid"), tr("Measured points in the board's order, with their numbers")};
     case Layer::Prediction:
       return {tr("Prediction"), tr("Board predicted by the tracker from the previous view")};
     case Layer::Reprojection:

@@ -189,7 +189,7 @@ bool Timeline::event(QEvent* event) {
   QString text = tr("%1 s").arg(at_s, 0, 'f', 3);
   if (const auto window = windowAt(at_s)) {
     text +=
-        tr("\n%1: %2 of +-%3 ms, %4 circles")
+        tr("\n%1: %2 of +-%3 ms, %4 points")
             .arg(windowOutcomeName(window->outcome), window->tracked ? tr("tracked window") : tr("window"))
             .arg(1e3 * window->half_width_s, 0, 'f', 1)
             .arg(window->circles);

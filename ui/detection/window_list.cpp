@@ -291,7 +291,7 @@ void WindowList::fitColumns() {
   QHeaderView& header = *table_->header();
   header.resizeSection(WindowListModel::Picture, kPictureSize_px.width() + 8);
   header.resizeSection(WindowListModel::Time, width(QStringLiteral("000.000")));
-  header.resizeSection(WindowListModel::Circles, width(tr("Circles")) + kSortMark_px);
+  header.resizeSection(WindowListModel::Circles, width(tr("Points")) + kSortMark_px);
   header.resizeSection(WindowListModel::Rms, width(tr("RMS px")) + kSortMark_px);
   header.resizeSection(WindowListModel::Speed, width(QStringLiteral("0000")) + kSortMark_px);
   const bool narrow = this->width() < kWholeTable_px;

@@ -231,11 +231,10 @@ QVariant WindowListModel::sortKeyOf(int row, int column) const {
 
 QString WindowListModel::helpOf(int row) const {
   const WindowRow& each = window(row);
-  const bool frames = kind_ == CameraKind::Frames;
   const QString second = secondLine(row);
   QString help = tr("%1 s: %2").arg(textOf(row, Time), textOf(row, State).toLower());
   if (!second.isEmpty()) help += QStringLiteral(", ") + second;
-  help += (frames ? tr("\n%1 points") : tr("\n%1 circles")).arg(each.report.circles);
+  help += tr("\n%1 points").arg(each.report.circles);
   if (std::isfinite(each.rms_px)) help += tr(", RMS %1 px").arg(textOf(row, Rms));
   if (std::isfinite(each.speed_px_s)) help += tr(", %1 px/s").arg(textOf(row, Speed));
   return help;
@@ -267,9 +266,7 @@ QVariant WindowListModel::data(const QModelIndex& index, int role) const {
 
 QVariant WindowListModel::headerData(int section, Qt::Orientation orientation, int role) const {
   if (orientation != Qt::Horizontal || section >= ColumnCount) return {};
-  const bool frames = kind_ == CameraKind::Frames;
-  const QString titles[] = {{},           tr("s"),   tr("State"), frames ? tr("Points") : tr("Circles"),
-                            tr("RMS px"), tr("px/s")};
+  const QString titles[] = {{}, tr("s"), tr("State"), tr("Points"), tr("RMS px"), tr("px/s")};
   const QString helps[] = {
       tr("Events of the window, or the frame"),
       tr("Middle of the window, in seconds since the recording's start"),

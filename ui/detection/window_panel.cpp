@@ -96,7 +96,7 @@ QString stageRow(const StageReport& stage) {
 QString passLine(const WindowReport& report, bool of_frame, bool missed_now) {
   if (missed_now && windowClass(report.outcome) == WindowClass::Missed)
     return WindowPanel::tr("Also missed in the last run");
-  const QString found = of_frame ? WindowPanel::tr(", %1 points%2") : WindowPanel::tr(", %1 circles%2");
+  const QString found = WindowPanel::tr(", %1 points%2");
   const QString how =
       report.circles > 0
           ? found.arg(report.circles).arg(report.tracked ? WindowPanel::tr(", tracked") : QString())

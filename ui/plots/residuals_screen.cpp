@@ -89,7 +89,7 @@ QWidget* ResidualsScreen::makeContent() {
   makeWindows();
   histogram_ = new PlotPanel(
       {.title = tr("Distribution"), .x_label = tr("residual / its sigma"), .y_label = tr("density")});
-  histogram_->addSeries(Kind::Bars, {.name = tr("circles"), .colour = PlotColour::Accent, .opacity = 0.55});
+  histogram_->addSeries(Kind::Bars, {.name = tr("points"), .colour = PlotColour::Accent, .opacity = 0.55});
   histogram_->addSeries(Kind::Line, {.name = tr("as stated"), .colour = PlotColour::Text, .width_px = 1.6});
   histogram_->addSeries(
       Kind::Line, {.name = tr("fitted"), .colour = PlotColour::Warning, .width_px = 1.6, .dashed = true});
@@ -124,7 +124,7 @@ QWidget* ResidualsScreen::makeBar() {
   threshold_->setSingleStep(0.005);
   threshold_->setSuffix(" px");
   threshold_->setToolTip(
-      tr("Event windows with a larger RMS of their circles are marked. The line in the chart of windows "
+      tr("Event windows with a larger RMS of their points are marked. The line in the chart of windows "
          "can also be dragged."));
   auto* const threshold_label = new QLabel(tr("Reject &above"));
   threshold_label->setBuddy(threshold_);
@@ -238,7 +238,7 @@ void ResidualsScreen::compute() {
 
 void ResidualsScreen::draw() {
   if (statistics_->used.empty()) {
-    setNote(*stack_, tr("The calibration used no circles of this camera."));
+    setNote(*stack_, tr("The calibration used no points of this camera."));
     showPage(*stack_, StackPage::Note);
     return;
   }
@@ -270,7 +270,7 @@ void ResidualsScreen::drawScatter() {
   }
   const Eigen::Vector2d sigma = statistics_->covariance_px2.diagonal().cwiseSqrt();
   scatter_->setNote(tr("\u03c3 %1, %2 px").arg(sigma.x(), 0, 'g', 3).arg(sigma.y(), 0, 'g', 3));
-  const QString thinned = every > 1 ? tr("One of %1 used circles is drawn.\n").arg(every) : QString();
+  const QString thinned = every > 1 ? tr("One of %1 used points is drawn.\n").arg(every) : QString();
   scatter_->setToolTip(thinned + scatter_help_);
   const double reach = kScatterReach * std::max(sigma.maxCoeff(), 1e-6);
   scatter_->setXRange(-reach, reach);

@@ -145,7 +145,7 @@ PoseReadout::PoseReadout(QWidget* parent) : QWidget(parent) {
     all->addWidget(pair);
   }
   values_[0]->setToolTip(tr("In the board's frame: x along a row, y down the columns, z into the board"));
-  values_[3]->setToolTip(tr("RMS over the circles of the board view nearest in time"));
+  values_[3]->setToolTip(tr("RMS over the points of the board view nearest in time"));
   setNumbers(PoseNumbers{});
 }
 

@@ -58,7 +58,7 @@ void TrajectoryTools::addColours() {
   colours_->setAccessibleName(tr("Colour by"));
   colours_->addItems({tr("Speed"), tr("Residual")});
   colours_->setToolTip(
-      tr("Quantity of the trajectory's colour: the IMU's speed, or the residual of the board's circles in\n"
+      tr("Quantity of the trajectory's colour: the IMU's speed, or the residual of the board's points in\n"
          "the nearest view (available after a calibration)"));
   connect(colours_, &QComboBox::activated, this,
           [this](int index) { emit colourChosen(static_cast<TrajectoryColour>(index)); });
@@ -70,7 +70,7 @@ void TrajectoryTools::addColours() {
 
 void TrajectoryTools::addLayers() {
   const std::array<std::pair<QString, QString>, kSceneLayerCount> texts = {{
-      {tr("Board"), tr("The board with its circles")},
+      {tr("Board"), tr("The board with its pattern")},
       {tr("Trajectory"), tr("Trajectory of the IMU in the world, from the spline")},
       {tr("Cameras"), tr("The cameras at regular intervals")},
       {tr("Camera now"), tr("The cameras at the cursor's time")},

@@ -221,7 +221,7 @@ void checkSession(const Session& session) {
                    "a flashing board cannot determine time offsets: the flash times on the sensors' clocks "
                    "are unknown, and the camera must be almost at rest",
                    "Calibrate each camera's intrinsics " + howTo(HowTo::CalibrateLens) +
-                       ", then move the sensors in front of a printed circle grid");
+                       ", then move the sensors in front of a printed board");
   if (session.imus.empty() && session.cameras.size() == 1) {
     throw badInput(session.source.string() + ": imus", "the session has neither an IMU nor a second camera",
                    "Add an IMU or a second camera. To calibrate only the camera's intrinsics, calibrate it " +

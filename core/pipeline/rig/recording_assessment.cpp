@@ -165,8 +165,8 @@ class Assessor {
         fast ? Light::Fair : lightOf(speed_px_s, kGoodSpeed_px_s, kFairSpeed_px_s),
         fmt::format("{:.0f} px/s", speed_px_s),
         fmt::format("{:g} to {:g} px/s", kGoodSpeed_px_s, kFastSpeed_px_s),
-        fast ? "Move more slowly: circles should cross the image in one or two seconds."
-             : "Move faster: circles should cross the image in one or two seconds.");
+        fast ? "Move more slowly: the board should cross the image in one or two seconds."
+             : "Move faster: the board should cross the image in one or two seconds.");
   }
 
   void assessLenses() {

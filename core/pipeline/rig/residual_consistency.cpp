@@ -31,16 +31,17 @@ std::vector<Measure> measuresOf(const CalibrationInput& input, const BatchSoluti
   for (std::size_t k = 0; k < input.cameras.size(); ++k) {
     const std::string& name = input.cameras[k].name;
     const double spread = solution.scales.circles[k];
-    all.push_back({spread, options.doubtful_circle_misfit, options.failed_circle_misfit,
-                   fmt::format("{}: circle residuals are {:.2g} times their sigmas: the board is not flat, "
-                               "or the lens model does not fit",
-                               name, spread)});
+    all.push_back(
+        {spread, options.doubtful_circle_misfit, options.failed_circle_misfit,
+         fmt::format("{}: residuals of points are {:.2g} times their sigmas: the board is not flat, "
+                     "or the lens model does not fit",
+                     name, spread)});
     const CameraFit& fit = solution.cameras[k];
     const double outliers =
         static_cast<double>(fit.circles_rejected) / std::max(1, fit.circles_rejected + fit.circles_used);
     all.push_back(
         {outliers, options.doubtful_outliers, options.failed_outliers,
-         fmt::format("{}: {:.0f} % of the circles contradict the others and were rejected as outliers", name,
+         fmt::format("{}: {:.0f} % of the points contradict the others and were rejected as outliers", name,
                      100.0 * outliers)});
   }
   for (std::size_t k = 0; k < input.imus.size(); ++k) {

@@ -25,14 +25,14 @@ const char* remedy(WindowOutcome outcome) {
       return "Keep moving: an event camera at rest sees nothing. If it did move, lower its contrast "
              "thresholds.";
     case WindowOutcome::TooFewCircles:
-      return "Keep the board in view, in focus and evenly lit; go closer if the circles are small.";
+      return "Keep the board in view, in focus and evenly lit; go closer if the board is small.";
     case WindowOutcome::NoLattice:
     case WindowOutcome::TooFewInGrid:
       return "Keep more of the board in the image, and keep moving clutter out of it.";
     case WindowOutcome::Ambiguous:
       return "Show the whole board more often: a part without an edge of the board is ambiguous.";
     case WindowOutcome::RefinementFailed:
-      return "Move more smoothly or more slowly: circles are blurred or overlap with other edges.";
+      return "Move more smoothly or more slowly: the board's edges are blurred or overlap with others.";
     case WindowOutcome::Blurred:
       return "Move more slowly, or use a shorter exposure and more light: frames are blurred.";
     case WindowOutcome::TooSmall:
@@ -79,9 +79,10 @@ void adviseCoverage(const std::string& name, const CameraMeasures& camera, std::
   if (camera.views == 0) return;
   if (!camera.cells.empty() && camera.coveredShare() < kCovered) {
     const std::string empty = emptyRegions(camera);
-    all.push_back({empty.empty() ? "Move the board through the whole image, into its corners."
-                                 : "Move the board through the whole image. Hardly covered: " + empty + ".",
-                   fmt::format("{}: circles cover {} of the image.", name, percent(camera.coveredShare()))});
+    all.push_back(
+        {empty.empty() ? "Move the board through the whole image, into its corners."
+                       : "Move the board through the whole image. Hardly covered: " + empty + ".",
+         fmt::format("{}: the board covered {} of the image.", name, percent(camera.coveredShare()))});
   }
   if (camera.poses.empty()) return;
   const auto spread = [&](double BoardPose::*angle) {

@@ -50,7 +50,7 @@ std::string timelineSvg(const PlotTable& runs, const PlotTable& counts, const Ca
   PlotFrame frame;
   frame.title = "event windows over time by outcome";
   frame.x_label = "time [s]";
-  frame.y_label = "circles in the grid";
+  frame.y_label = "points in the grid";
   frame.x = {runs.values[1].front(), std::max(runs.values[2].back(), runs.values[1].front() + 1e-3)};
   frame.y = {0.0, 1.35 * on_board};
   frame.height = 220.0;
@@ -71,13 +71,13 @@ std::string timelineSvg(const PlotTable& runs, const PlotTable& counts, const Ca
 std::string outcomeTable(const CameraMeasures& camera) {
   static constexpr std::array<const char*, kWindowOutcomeCount> kMeaning = {
       "the whole board",
-      "part of the board, with enough circles to identify them",
+      "part of the board, with enough points to identify them",
       "almost no motion, or nothing in view",
-      "too few circle candidates: board out of view, blurred, or of low contrast",
-      "circle candidates that do not form a lattice",
-      "a lattice of too few circles: only a small part of the board in view",
+      "too few candidates for circles or corners: board out of view, blurred, or of low contrast",
+      "candidates that do not form a lattice",
+      "a lattice of too few points: only a small part of the board in view",
       "several placements of the board explain the events equally well",
-      "circles lost in the joint fit of all circles: blur or clutter",
+      "points lost in the joint fit of all points: blur or clutter",
       "the board moved too far during the exposure of the frame",
       "a damaged image",
       "the board was found, but the event window was rejected by hand because of its residuals",
@@ -110,14 +110,14 @@ void writeImageCoverage(const CameraMeasures& camera, std::size_t index, ReportP
   PlotTable centres(fmt::format("plots/camera{}_centres.csv", index + 1), {"x_px", "y_px"});
   for (std::size_t i = 0; i < camera.centres_px.size(); i += strideFor(camera.centres_px.size(), kMax))
     centres.add({camera.centres_px[i].x(), camera.centres_px[i].y()});
-  SvgPlot scatter(imageFrame(camera.resolution_px.width_px, camera.resolution_px.height_px,
-                             "circle centres over the image"));
+  SvgPlot scatter(
+      imageFrame(camera.resolution_px.width_px, camera.resolution_px.height_px, "points over the image"));
   scatter.points(centres.values[0], centres.values[1], "c2 faint", 2.4);
   const PlotTable cells = cellTable(camera, index);
   double most = 1.0;
   for (const double count : cells.values[4]) most = std::max(most, count);
   SvgPlot map(imageFrame(camera.resolution_px.width_px, camera.resolution_px.height_px,
-                         "circles in each part of the image"));
+                         "points in each part of the image"));
   for (std::size_t i = 0; i < cells.rows(); ++i) {
     const auto& v = cells.values;
     if (v[4][i] > 0.0) map.bar(v[0][i], v[1][i], v[2][i], v[3][i], "c2", 0.12 + 0.7 * v[4][i] / most);
@@ -128,11 +128,11 @@ void writeImageCoverage(const CameraMeasures& camera, std::size_t index, ReportP
   page.figure(
       scatter.svg(),
       fmt::format(
-          "Measured circle centres (one in {} shown). In empty corners the lens model is not verified.",
+          "Measured centres or corners (one in {} shown). In empty corners the lens model is not verified.",
           strideFor(camera.centres_px.size(), kMax)),
       &centres);
   page.figure(map.svg(),
-              fmt::format("Number of circles in each part of the image: {} % of the parts have at least one.",
+              fmt::format("Number of points in each part of the image: {} % of the parts have at least one.",
                           number(100.0 * camera.coveredShare(), 0)),
               &cells);
   page.endRow();
@@ -228,7 +228,7 @@ void writeDetections(const ReportData& data, const Measures& measures, ReportPag
     page.figure(
         timelineSvg(runs, counts, camera, points),
         fmt::format(
-            "The bar shows each event window's outcome, the dots the number of found circles (the board "
+            "The bar shows each event window's outcome, the dots the number of found points (the board "
             "has {}). Stretches without the board do not contribute to the calibration.",
             points),
         &runs);

@@ -96,7 +96,7 @@ void writeMaps(const IntrinsicsResult& found, std::size_t index, ReportPage& pag
                           significant(found.image.rms_px, 2), significant(found.image.max_px, 2)),
               &cells);
   page.figure(
-      mapSvg(cells, 4, size, "circles of the chosen views", "c2", 1.0),
+      mapSvg(cells, 4, size, "points of the chosen views", "c2", 1.0),
       "Parts of the image in which the lens was measured; elsewhere the model interpolates or extrapolates.",
       &cells);
   page.endRow();
@@ -107,7 +107,7 @@ void writeCamera(const ReportData& data, std::size_t index, ReportPage& page) {
   const IntrinsicsResult& found = *data.intrinsics[index];
   page.heading("Camera " + cameraName(data, index));
   page.text(paragraph(
-      "", fmt::format("{}, {} x {} px, from {} of {} views ({} circles, {} rejected), tilted by up to {} "
+      "", fmt::format("{}, {} x {} px, from {} of {} views ({} points, {} rejected), tilted by up to {} "
                       "deg; reprojection {} px RMS.",
                       cameraModelTitle(found.intrinsics.model), found.intrinsics.resolution_px.width_px,
                       found.intrinsics.resolution_px.height_px, found.views_used, found.views_found,

@@ -93,7 +93,7 @@ std::string cameraTiles(const ReportData& data, const Measures& measures, std::s
                fmt::format("required sigma {}", plain(data.needs.time_offset_ms)));
   const CameraFit fit = elementOrNone(data.named.result->cameras, i);
   text += tile(name + ": reprojection", significant(fit.reprojection_rms_px) + " px",
-               fmt::format("RMS of {} circles", fit.circles_used));
+               fmt::format("RMS of {} points", fit.circles_used));
   if (i < measures.cameras.size())
     text += tile(name + ": board found", number(100.0 * measures.cameras[i].detectionRate(), 0) + " %",
                  fmt::format("of {} event windows or frames", measures.cameras[i].windows));

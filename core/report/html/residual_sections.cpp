@@ -44,7 +44,7 @@ void writeScatter(const std::vector<CircleResidual>& residuals, std::size_t inde
   page.figure(
       plot.svg(),
       fmt::format(
-          "One in {} circles; the ring is the RMS, {} px. The distribution should be round and centred.",
+          "One in {} points; the ring is the RMS, {} px. The distribution should be round and centred.",
           strideFor(residuals.size(), kMax), significant(rms_px)),
       &scatter);
   page.keep(scatter);
@@ -247,15 +247,15 @@ void writeReprojection(const ReportData& data, const Measures& measures, ReportP
     if (residuals.empty()) continue;
     page.heading("Camera " + cameraName(data, i));
     page.text(paragraph(
-        "", fmt::format(
-                "{} px RMS over {} circles of {} event windows or frames; {} circles rejected as outliers. "
-                "The residuals are {} times those expected by the front end.{}",
-                significant(fit.reprojection_rms_px), fit.circles_used, fit.windows_used,
-                fit.circles_rejected, significant(fit.normalised_rms, 2),
-                fit.neighbour_agreement > 0.0
-                    ? fmt::format(" Errors of neighbouring circles agree to {:.2f} (correlation).",
-                                  fit.neighbour_agreement)
-                    : "")));
+        "",
+        fmt::format("{} px RMS over {} points of {} event windows or frames; {} points rejected as outliers. "
+                    "The residuals are {} times those expected by the front end.{}",
+                    significant(fit.reprojection_rms_px), fit.circles_used, fit.windows_used,
+                    fit.circles_rejected, significant(fit.normalised_rms, 2),
+                    fit.neighbour_agreement > 0.0
+                        ? fmt::format(" Errors of neighbouring points agree to {:.2f} (correlation).",
+                                      fit.neighbour_agreement)
+                        : "")));
     page.beginRow();
     writeScatter(residuals, i, fit.reprojection_rms_px, page);
     if (i < measures.cameras.size()) writeBias(measures.cameras[i], i, page);

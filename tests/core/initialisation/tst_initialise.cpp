@@ -278,7 +278,7 @@ class TestInitialise : public QObject {
           for (BoardView& view : input.cameras[0].observations.views)
             for (CircleObservation& circle : view.circles) circle.circle = 43 - circle.circle * 7 % 44;
         },
-        "circles fit the board in");
+        "points fit the board in");
     row(
         "IMU at rest",
         [](auto& input) {

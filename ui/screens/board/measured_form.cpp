@@ -42,13 +42,13 @@ MeasuredForm::MeasuredForm(QWidget* parent)
       tr("Between the centres of the first and the last circle in one line; for tags, between the same "
          "corners of two"));
   length_std_mm_->setToolTip(tr("Standard deviation of the measured length; 0: exact"));
-  circles_->setToolTip(tr("Number of circles in the measured line, including both ends"));
+  circles_->setToolTip(tr("Number of circles, corners or tags in the measured line, including both ends"));
   circles_->setFocusPolicy(Qt::StrongFocus);
   auto* const form = new QFormLayout(this);
   form->setContentsMargins(0, 0, 0, 0);
   form->addRow(is_measured_);
   form->addRow(tr("Length [mm]"), length_mm_);
-  form->addRow(tr("Number of circles"), circles_);
+  form->addRow(tr("Number of points"), circles_);
   form->addRow(tr("Sigma [mm]"), length_std_mm_);
   for (QWidget* const field : {static_cast<QWidget*>(length_mm_), static_cast<QWidget*>(circles_),
                                static_cast<QWidget*>(length_std_mm_)}) {

@@ -99,12 +99,12 @@ const std::vector<ShownMotion>& shownMotions() {
        &nearer, lens},
       {"corners", QObject::tr("Into the corners"),
        QObject::tr(
-           "Move the board once around the image, into all corners: a lens is calibrated only where circles "
+           "Move the board once around the image, into all corners: a lens is calibrated only where points "
            "were seen."),
        &intoCorners, ahead},
       {"together", QObject::tr("All at once"),
        QObject::tr(
-           "Now record 20 to 30 seconds of all these motions, mixed. Circles should cross the image in one "
+           "Now record 20 to 30 seconds of all these motions, mixed. The board should cross the image in one "
            "or two seconds: the check rates a median of %1 to %2 pixels per second as good. An event camera "
            "at rest sees nothing, so pauses at the start or at the end are not needed. Light the board "
            "evenly, by daylight or a lamp that does not flicker, and keep moving objects out of view.")
