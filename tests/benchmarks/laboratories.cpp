@@ -171,17 +171,6 @@ bool Results::print() const {
   return failed == 0 && wrong == 0 && errors.areRight();
 }
 
-// All events are late by the delay of the pixels, and so is the estimated time offset: no data show it.
-void subtractPixelDelay(double delay_s, Outcome& outcome) {
-  if (!outcome.comparison) return;
-  const double delay_ms = 1e3 * delay_s;
-  for (QuantityDifference& number : outcome.comparison->quantities)
-    if (isOf(".time_offset", number)) {
-      number.difference += delay_ms;
-      outcome.comparison->cameras.front().time_offset_ms = std::abs(number.difference);
-    }
-}
-
 std::vector<std::string> variantsOf(const Arguments& arguments) {
   std::vector<std::string> variants = {"default"};
   variants.insert(variants.end(), arguments.variants.begin(), arguments.variants.end());

@@ -206,6 +206,16 @@ bool isOf(const char* part, const QuantityDifference& number) {
   return number.name.find(part) != std::string::npos && number.name.find("drift") == std::string::npos;
 }
 
+void subtractPixelDelay(double delay_s, Outcome& outcome) {
+  if (!outcome.comparison) return;
+  const double delay_ms = 1e3 * delay_s;
+  for (QuantityDifference& number : outcome.comparison->quantities)
+    if (isOf(".time_offset", number)) {
+      number.difference += delay_ms;
+      outcome.comparison->cameras.front().time_offset_ms = std::abs(number.difference);
+    }
+}
+
 PartError rotationError_deg(const TruthComparison& comparison) {
   return partError(comparison, ".rotation.");
 }

@@ -55,6 +55,9 @@ struct NormalisedErrors {
 // True for a number of this vector: ".rotation.", ".translation." or ".time_offset", which is not its drift.
 bool isOf(const char* part, const QuantityDifference& number);
 
+// All events are late by the delay of the pixels, and so is the estimated time offset: no data show it.
+void subtractPixelDelay(double delay_s, Outcome& outcome);
+
 // Error of the sensor with the largest one, in the report's units.
 struct PartError {
   double size = 0.0, sigma = 0.0;
