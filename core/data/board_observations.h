@@ -107,7 +107,8 @@ struct BoardObservations {
   std::optional<PolarityDelay> polarity_delay = {};  // of events, if speeds vary enough to determine it
   double narrowest_px =
       0.0;  // largest width in which windows that are TooSmall showed the narrowest dark lines
-  double stamp_step_s = 0.0;  // of events with rounded time stamps; 0: not rounded
+  bool single_events = false;  // of events: edges fire about one event per pixel
+  double stamp_step_s = 0.0;   // of events with rounded time stamps; 0: not rounded
 };
 
 }  // namespace evical

@@ -17,8 +17,10 @@ namespace evical {
 namespace {
 
 // Lengths in the sensor's pixels.
-constexpr double kCornerGap_px = 1.5;  // next to the end of an edge, the blur of the corner displaces bursts
-constexpr double kShortest_px = 1.5;   // of what remains of an edge
+// Next to the end of an edge, the blur of the corner displaces bursts. Single events are less exact and too
+// few.
+constexpr double kCornerGap_px = 1.5, kCornerGapForSingleEvents_px = 0.5;
+constexpr double kShortest_px = 1.5;  // of what remains of an edge
 // To the next parallel edge, which displaces bursts, too. Light on narrow ink changes its darkness by a large
 // factor, and pixels see factors; on narrow paper it hardly matters.
 constexpr double kMinPaper_px = 2.0;
@@ -40,6 +42,10 @@ std::optional<SensorPlace> sensorPlace(const BoardScene& scene, const Eigen::Vec
   place.scale = std::sqrt(std::abs(place.ideal_per_px.determinant()));
   if (!(place.scale > 1e-3)) return std::nullopt;
   return place;
+}
+
+double cornerGap_px(const BoardScene& scene) {
+  return scene.single_events ? kCornerGapForSingleEvents_px : kCornerGap_px;
 }
 
 bool touchesImage(const OutlineImage& outline, Resolution size_px) {
@@ -114,7 +120,7 @@ std::vector<OutlineImage> projectBoard(const Eigen::Matrix3d& ideal_from_board, 
     std::optional<OutlineImage> outline;
     if (scene.edges)
       outline = imageOfEdge(ideal_from_board, scene, scene.edges->edges[static_cast<std::size_t>(i)],
-                            kCornerGap_px, kCornerGap_px);
+                            cornerGap_px(scene), cornerGap_px(scene));
     else
       outline = imageOfCircle(ideal_from_board, scene, i);
     if (!outline || !touchesImage(*outline, scene.resolution_px)) continue;
@@ -165,7 +171,7 @@ std::optional<PointImage> imageOfPoint(const Eigen::Matrix3d& h, const BoardScen
   if (!insideImage(out, scene.resolution_px)) return std::nullopt;
   const auto& arms = scene.edges->arms[static_cast<std::size_t>(index)];
   for (std::size_t k = 0; k < arms.size(); ++k) {
-    const std::optional<OutlineImage> arm = imageOfEdge(h, scene, arms[k], kCornerGap_px, 0.0);
+    const std::optional<OutlineImage> arm = imageOfEdge(h, scene, arms[k], cornerGap_px(scene), 0.0);
     out.shown[k] = arm.has_value();
     if (arm) out.outlines[k] = *arm;
   }

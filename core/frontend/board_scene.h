@@ -1,6 +1,7 @@
 // Constants of all windows: the board, the sensor, and the lens between them.
 #pragma once
 
+#include "core/frontend/detection_options.h"
 #include "core/geometry/board.h"
 
 #include "core/geometry/camera_intrinsics.h"
@@ -45,8 +46,11 @@ class EdgeMap {
 
   explicit EdgeMap(const std::vector<PrintedEdge>& edges);
 
-  bool contains(const Eigen::Vector2d& at_m) const {
-    return (at_m.array() >= low_m_.array()).all() && (at_m.array() < high_m_.array()).all();
+  // Within the map, or `beyond` its own size around it.
+  bool contains(const Eigen::Vector2d& at_m, double beyond = 0.0) const {
+    const Eigen::Array2d margin_m = beyond * (high_m_ - low_m_).array();
+    return (at_m.array() >= low_m_.array() - margin_m).all() &&
+           (at_m.array() < high_m_.array() + margin_m).all();
   }
   // Infinite beyond the map, and beyond half of the smallest distance between edges.
   double distance_m(const Eigen::Vector2d& at_m, int direction) const {
@@ -94,10 +98,17 @@ struct BoardScene {
   std::shared_ptr<const IdealPixels> pixels;  // null without a camera: ideal pixels are the sensor's own
   std::shared_ptr<const BoardEdges> edges;    // null for circles
   bool print_known = false;                   // the edges are of the print, and no other one is tried
+  bool single_events = false;                 // windows contain crossings that are too few for a burst
 
   BoardScene(const Board& board, Resolution resolution_px, std::optional<CameraIntrinsics> camera);
 
   int outlineCount() const { return edges ? static_cast<int>(edges->edges.size()) : board.pointCount(); }
 };
+
+// Bursts of a board: of a checkerboard, whose lattice is found in single events, those are needed, too.
+inline BurstOptions burstsFor(const Board& board, BurstOptions options) {
+  options.single_events = board.type == BoardType::Checkerboard;
+  return options;
+}
 
 }  // namespace evical

@@ -1,10 +1,12 @@
 #include "core/frontend/board_search.h"
 
 #include "core/frontend/circle_measurement.h"
+#include "core/frontend/lattice_waves.h"
 #include "core/frontend/pattern_agreement.h"
 #include "core/frontend/ring_vote.h"
 #include "core/frontend/rival_placements.h"
 #include "core/frontend/window_trace.h"
+#include "core/geometry/camera_model.h"
 #include "core/geometry/homography.h"
 
 #include <Eigen/Geometry>
@@ -20,8 +22,9 @@ namespace {
 
 // Window lengths that are tried, relative to the one in which edges travel the distance of the options.
 constexpr std::array kWindowFactors = {1.0, 2.0, 0.5};
-constexpr double kSpeedHalfWindow_s = 0.04;  // for the edges' typical speed
-constexpr double kSlowest_px_s = 10.0;       // lower limit of speeds
+constexpr std::array kWaveHalfWindows_s = {0.05, 0.025};  // in which edges travel less than a square
+constexpr double kSpeedHalfWindow_s = 0.04;               // for the edges' typical speed
+constexpr double kSlowest_px_s = 10.0;                    // lower limit of speeds
 constexpr double kRoughGateFactor =
     1.5;  // factor on the first gate: placements are less accurate than predictions
 
@@ -113,7 +116,8 @@ Judged shiftedTo(const PlacementScore& rival, const Judged& judged, const BurstW
                  const BoardScene& scene, double half_window_s, const FrontEndOptions& options) {
   const BoardMotion motion = shifted(judged.motion, rival.shift);
   if (scene.edges) return judgeFitted(motion, window, scene, half_window_s, options);
-  return Judged{motion, rival.measured, rival.missing};
+  return Judged{motion, static_cast<int>(std::lround(rival.measured)),
+                static_cast<int>(std::lround(rival.missing))};
 }
 
 // Edges of any speed are found in a long window, but measured in one that suits theirs.
@@ -122,25 +126,45 @@ double measuredHalf_s(const BoardSearch& search, const BoardScene& scene, const 
   return fitHalfWindow_s(boardSpeed_px_s(search.placements.front().motion, scene), options.tracking);
 }
 
-WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& given,
-                              const FrontEndOptions& options, BoardSearch& search) {
-  BoardScene scene = given;  // with the print that is found
-  const double half_s = measuredHalf_s(search, scene, options);
+// The best of the placements, jointly fitted; empty if none can be fitted.
+std::optional<Judged> bestFit(const BurstWindow& window, const BoardScene& scene, double half_s,
+                              const FrontEndOptions& options, const BoardSearch& search) {
   std::optional<Judged> best;
   for (const PlacementGroup& group : groupedByCircles(search.placements, scene.board)) {
     std::optional<Judged> judged = judge(*group.first, window, scene, half_s, options);
     if (!judged) continue;
     const bool undecided = scene.edges || judged->measured < scene.board.pointCount();
     if (undecided && group.shifts.size() > 1) {
-      const PlacementScore first =
-          rivalPlacements(judged->motion, group.shifts, window, scene, half_s, options.tracking).front();
-      judged = shiftedTo(first, *judged, window, scene, half_s, options);
+      std::vector<PlacementScore> rivals =
+          rivalPlacements(judged->motion, group.shifts, window, scene, half_s, options.tracking);
+      sortByValue(rivals);
+      judged = shiftedTo(rivals.front(), *judged, window, scene, half_s, options);
     }
     if (!best || judged->value() > best->value()) best = judged;
     if (!scene.edges && best->measured == scene.board.pointCount()) break;
   }
+  return best;
+}
+
+// True if enough of the board is there. Of single events few corners can be measured: there, crossings must
+// agree.
+bool showsBoard(const Judged& best, const PlacementScore& agreement, const BoardScene& scene,
+                const GridOptions& options) {
+  constexpr double kMaxContradiction = 0.2;
+  const int count = scene.board.pointCount();
+  if (best.measured < std::max<double>(options.min_circles, minPartial(count, options))) return false;
+  if (scene.single_events) return agreement.missing <= kMaxContradiction * agreement.measured;
+  return best.missing <= options.max_missing * best.measured;
+}
+
+WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& given,
+                              const FrontEndOptions& options, BoardSearch& search) {
+  BoardScene scene = given;  // with the print that is found
+  const double half_s = measuredHalf_s(search, scene, options);
+  std::optional<Judged> best = bestFit(window, scene, half_s, options, search);
   if (!best) return WindowOutcome::RefinementFailed;
   const int count = scene.board.pointCount();
+  PlacementScore first;
   if (scene.edges || best->measured < count) {
     const std::vector<Eigen::Matrix3d> shifts = rivalShifts(scene, options.grid.min_rival_overlap);
     if (scene.edges && scene.board.hasTags()) {
@@ -150,17 +174,18 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& given
       best->motion = shifted(best->motion, match.shift);
       scene.edges = match.edges;
     }
-    const std::vector<PlacementScore> rivals =
+    std::vector<PlacementScore> rivals =
         rivalPlacements(best->motion, shifts, window, scene, half_s, options.tracking);
-    const PlacementScore& first = rivals.front();
+    sortByValue(rivals);
+    first = rivals.front();
     best = shiftedTo(first, *best, window, scene, half_s, options);
-    if ((scene.edges || best->measured < count) && rivals.size() > 1 &&
-        rivals[1].value() > first.value() - options.grid.ambiguity_margin) {
-      return WindowOutcome::Ambiguous;
-    }
+    const bool undecided = !std::all_of(rivals.begin() + 1, rivals.end(), [&](const PlacementScore& rival) {
+      return first.excludes(rival, options.grid.ambiguity_margin);
+    });
+    if (undecided && !scene.edges && best->measured < count) return WindowOutcome::Ambiguous;
+    search.distinguished = !undecided || !scene.edges;  // squares: later windows may decide
   }
-  if (best->measured < std::max<double>(options.grid.min_circles, minPartial(count, options.grid)) ||
-      best->missing > options.grid.max_missing * best->measured) {
+  if (!showsBoard(*best, first, scene, options.grid)) {
     if (scene.edges) search.narrowest_px = narrowestInk_px(best->motion.ideal_from_board, scene);
     return scene.edges && search.narrowest_px < kMinInk_px ? WindowOutcome::TooSmall
                                                            : WindowOutcome::TooFewInGrid;
@@ -172,6 +197,35 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& given
 void fail(BoardSearch& search, SearchStage stage, WindowOutcome outcome) {
   search.ended = stage;
   search.outcome = outcome;
+}
+
+// A motion without rotation.
+PlaneFlow shiftBy(const Eigen::Vector2d& velocity_px_s, const BoardScene& scene, const ImageFrame& frame) {
+  Eigen::Vector2d velocity = velocity_px_s;
+  if (scene.camera) velocity = idealPixelScale(*scene.camera, frame.centre_px) * velocity;
+  PlaneFlow shift = PlaneFlow::Zero();
+  shift(0) = velocity.x();
+  shift(3) = velocity.y();
+  return shift;
+}
+
+// Squares in single events, which are too few for normal flow.
+void searchWaves(const BurstWindow& window, const BoardScene& scene, const FrontEndOptions& options,
+                 BoardSearch& search) {
+  for (const WaveLattice& waves : findLatticeWaves(window, search.half_window_s)) {
+    if (static_cast<int>(waves.corners.nodes.size()) < options.grid.min_circles) continue;
+    const auto flow = [&](const ImageFrame& frame) { return shiftBy(waves.velocity_px_s, scene, frame); };
+    std::vector<BoardPlacement> placements =
+        placeOnBoard(waves.corners, waves.saddles, flow, scene, window.middle_ns(), options.grid);
+    // Saddles are numbered across lattices.
+    const std::size_t before = search.saddles.size();
+    search.saddles.insert(search.saddles.end(), waves.saddles.begin(), waves.saddles.end());
+    for (BoardPlacement& placement : placements) {
+      for (auto& [circle, saddle] : placement.circles) saddle += before;
+      search.placements.push_back(std::move(placement));
+    }
+  }
+  if (search.saddles.empty()) fail(search, SearchStage::Lattice, WindowOutcome::NoLattice);
 }
 
 // Squares: saddles of both reaches; the one with the larger lattice is kept.
@@ -190,8 +244,9 @@ void searchCorners(const BurstWindow& window, const BoardScene& scene, const Fro
   if (static_cast<int>(search.saddles.size()) < options.grid.min_circles)
     return fail(search, SearchStage::Circles, WindowOutcome::TooFewCircles);
   if (search.corners.nodes.empty()) return fail(search, SearchStage::Lattice, WindowOutcome::NoLattice);
+  const auto flow = [&](const ImageFrame& frame) { return flowOf(crossings, scene, frame); };
   search.placements =
-      placeOnBoard(search.corners, search.saddles, crossings, scene, window.middle_ns(), options.grid);
+      placeOnBoard(search.corners, search.saddles, flow, scene, window.middle_ns(), options.grid);
 }
 
 void searchCircles(const BurstWindow& window, double speed_px_s, const BoardScene& scene,
@@ -214,7 +269,9 @@ void searchWindow(const BurstWindow& window, double speed_px_s, const BoardScene
   search.bursts = static_cast<int>(window.bursts().size());
   if (search.bursts < options.detection.min_window_bursts)
     return fail(search, SearchStage::Bursts, WindowOutcome::TooFewEvents);
-  if (scene.edges)
+  if (scene.single_events)
+    searchWaves(window, scene, options, search);
+  else if (scene.edges)
     searchCorners(window, scene, options, search);
   else
     searchCircles(window, speed_px_s, scene, options, search);
@@ -248,6 +305,15 @@ class Searcher {
 
   BoardSearch searchBy(CandidateSource source) {
     BoardSearch search;
+    if (scene_.single_events) {
+      for (const double half_s : kWaveHalfWindows_s) {
+        search = BoardSearch{};
+        search.half_window_s = half_s;
+        searchWindow(windowOf(kSearchReach_s), speed_px_s_, scene_, options_, search);
+        if (search.motion) break;
+      }
+      return search;
+    }
     if (scene_.edges) {
       search.half_window_s = kSearchReach_s;
       searchWindow(windowOf(kSearchReach_s), speed_px_s_, scene_, options_, search);

@@ -33,6 +33,7 @@ struct BoardSearch {
   CornerLattice corners;                 // and instead of their lattice
   std::vector<BoardPlacement> placements;
   std::optional<BoardMotion> motion;
+  bool distinguished = true;                // false: another placement of squares explains about as much
   double narrowest_px = 0.0;                // of an outcome TooSmall: narrowestInk_px
   std::shared_ptr<const BoardEdges> edges;  // of the print that was found, of a board of squares
 };

@@ -23,6 +23,7 @@ BoardTracker::BoardTracker(const Board& board, Resolution resolution_px,
                            std::optional<CameraIntrinsics> camera, const FrontEndOptions& options,
                            std::int64_t start_ns)
     : scene_(board, resolution_px, std::move(camera)),
+      given_options_(options),
       options_(options),
       start_ns_(start_ns),
       window_(scene_),
@@ -35,7 +36,7 @@ BoardTracker::BoardTracker(const Board& board, Resolution resolution_px,
 
 void BoardTracker::add(EventSpan events) {
   if (events.empty()) return;
-  if (!extractor_) extractor_.emplace(scene_.resolution_px, options_.bursts);
+  if (!extractor_) extractor_.emplace(scene_.resolution_px, burstsFor(scene_.board, options_.bursts));
   new_bursts_.clear();
   extractor_->add(events, new_bursts_);
   addBursts(new_bursts_, events.front().time_ns, extractor_->completeUntil_ns());
@@ -70,6 +71,7 @@ BoardObservations BoardTracker::finish() {
   const auto earlier = [](const auto& a, const auto& b) { return a.time_s < b.time_s; };
   std::sort(observations_.views.begin(), observations_.views.end(), earlier);
   std::sort(observations_.windows.begin(), observations_.windows.end(), earlier);
+  observations_.single_events = scene_.single_events;
   observations_.polarity_delay = polarity_delay_.result(scene_.board.circles);
   return std::move(observations_);
 }
@@ -109,6 +111,7 @@ void BoardTracker::processWindows() {
 void BoardTracker::processSlot(const WindowSlot& slot) {
   const std::int64_t middle_ns = slot.middle_ns();
   if (motion_) {
+    if (scene_.single_events) searchNearPrediction(middle_ns);
     WindowTrace trace = track(slot, *motion_);
     if (trace.held()) {
       reconsiderPlacement(slot, trace);
@@ -120,6 +123,8 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
     if (static_cast<double>(middle_ns - motion_->time_ns) * 1e-9 > options_.tracking.max_gap_s) {
       motion_.reset();
       endTrack();
+      if (scene_.single_events && observations_.views.empty())
+        useSingleEvents(false);  // it was not the board
     }
   }
   if (middle_ns - last_search_ns_ < nanosecondsFrom(search_interval_s_)) {
@@ -127,7 +132,7 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
     return;
   }
   last_search_ns_ = middle_ns;
-  const BoardSearch search = searchBoard(history_, middle_ns, scene_, options_).back();
+  const BoardSearch search = searchWindow(middle_ns);
   if (observer_) observer_->windowSearched(search, middle_ns);
   if (search.outcome == WindowOutcome::TooSmall)
     observations_.narrowest_px = std::max(observations_.narrowest_px, search.narrowest_px);
@@ -142,7 +147,7 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
       scene_.edges = search.edges;
       placement_watch_ = PlacementWatch(scene_, options_.grid);
     }
-    acquire(slot, *search.motion);
+    acquire(slot, *search.motion, search.distinguished);
   } else {
     search_interval_s_ =
         std::min(kSearchIntervalGrowth * search_interval_s_, options_.detection.max_search_interval_s);
@@ -150,7 +155,47 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
   }
 }
 
-void BoardTracker::acquire(const WindowSlot& slot, const BoardMotion& motion) {
+// As long as a board is hardly found, a search tries single events, too, if there are many more of them than
+// bursts.
+BoardSearch BoardTracker::searchWindow(std::int64_t middle_ns) {
+  constexpr std::int64_t kAround_ns = 50'000'000;
+  constexpr std::size_t kManyMore = 3;
+  constexpr double kFound = 0.1;  // of the windows
+  BoardSearch search = searchBoard(history_, middle_ns, scene_, options_).back();
+  const bool found_often = kFound * static_cast<double>(observations_.windows.size()) <
+                           static_cast<double>(observations_.views.size());
+  if (search.motion || scene_.single_events || found_often) return search;
+  const std::size_t all = history_.count(middle_ns - kAround_ns, middle_ns + kAround_ns, true),
+                    bursts = history_.count(middle_ns - kAround_ns, middle_ns + kAround_ns, false);
+  if (all < kManyMore * bursts || all == bursts) return search;
+  BoardScene scene = scene_;
+  scene.single_events = true;
+  BoardSearch in_single = searchBoard(history_, middle_ns, scene, forSingleEvents(options_)).back();
+  // Most single events are noise, unless edges fire no more.
+  if (!in_single.motion || in_single.motion->typical_events > 1.0) return search;
+  useSingleEvents(true);
+  return in_single;
+}
+
+void BoardTracker::useSingleEvents(bool use) {
+  scene_.single_events = use;
+  options_ = use ? forSingleEvents(given_options_) : given_options_;
+  window_ = BurstWindow(scene_);
+}
+
+// Single events hardly determine the motion across edges that move along themselves, and a fit from window to
+// window drifts. Each window is searched; the board is expected near its prediction.
+void BoardTracker::searchNearPrediction(std::int64_t middle_ns) {
+  constexpr std::int64_t kLongest_ns = 150'000'000;  // later, another placement may be as near
+  if (middle_ns - motion_->time_ns > kLongest_ns) return;
+  const BoardSearch search = searchBoard(history_, middle_ns, scene_, options_).back();
+  if (!search.motion) return;
+  const auto shift =
+      placement_watch_.continuationOf(predicted(*motion_, middle_ns), *search.motion, scene_.board);
+  if (shift) motion_ = shifted(*search.motion, *shift);
+}
+
+void BoardTracker::acquire(const WindowSlot& slot, const BoardMotion& motion, bool distinguished) {
   WindowTrace trace = track(slot, motion);
   if (!trace.held()) {
     miss(slot, nullptr);
@@ -159,6 +204,7 @@ void BoardTracker::acquire(const WindowSlot& slot, const BoardMotion& motion) {
   trace.report.tracked = false;
   motion_ = trace.motion;
   endTrack();
+  placement_watch_.begin(distinguished);
   trackBackwards(slot, *trace.motion);
   tracked_until_ns_ = slot.end_ns;
   keep(trace);
@@ -186,7 +232,8 @@ void BoardTracker::trackBackwards(const WindowSlot& from, BoardMotion motion) {
 
 WindowTrace BoardTracker::track(const WindowSlot& slot, const BoardMotion& last) {
   WindowTrace trace = trackWindow({history_, scene_, options_, start_ns_}, slot, last, window_);
-  if (trace.held() && held_windows_++ % options_.extent.every_windows == 0)
+  // Single events are too few to tell whether a line of corners is missing.
+  if (trace.held() && !scene_.single_events && held_windows_++ % options_.extent.every_windows == 0)
     judgeExtent(window_, trace, scene_, options_, observations_.extent);
   if (observer_) observer_->windowTracked(window_, trace);
   return trace;
@@ -240,7 +287,6 @@ void BoardTracker::endTrack() {
     views.resize(open_begin_);
   }
   open_begin_ = views.size();
-  placement_watch_.begin();
 }
 
 WindowReport& BoardTracker::reportOf(const BoardView& view) {
@@ -263,7 +309,7 @@ void BoardTracker::miss(const WindowSlot& slot, const BoardSearch* search) {
   WindowReport report;
   report.time_s = secondsSince(start_ns_, slot.middle_ns());
   report.half_width_s = slot.half_s();
-  report.events = static_cast<int>(history_.count(slot.begin_ns, slot.end_ns));
+  report.events = static_cast<int>(history_.count(slot.begin_ns, slot.end_ns, scene_.single_events));
   if (search) {
     report.outcome = search->outcome;
     report.candidates = static_cast<int>(search->candidates.size() + search->saddles.size());

@@ -46,7 +46,10 @@ class BoardTracker {
   WindowSlot nextSlot() const;
   void skipEmptyTime(std::int64_t until_ns);
   void processSlot(const WindowSlot& slot);
-  void acquire(const WindowSlot& slot, const BoardMotion& motion);
+  BoardSearch searchWindow(std::int64_t middle_ns);
+  void useSingleEvents(bool use);
+  void searchNearPrediction(std::int64_t middle_ns);
+  void acquire(const WindowSlot& slot, const BoardMotion& motion, bool distinguished);
   void trackBackwards(const WindowSlot& from, BoardMotion motion);
   WindowTrace track(const WindowSlot& slot, const BoardMotion& last);
   void reconsiderPlacement(const WindowSlot& slot, WindowTrace& trace);
@@ -58,7 +61,7 @@ class BoardTracker {
   std::int64_t slotLength_ns(const BoardMotion* motion) const;
 
   BoardScene scene_;
-  FrontEndOptions options_;
+  FrontEndOptions given_options_, options_;  // the present ones may be for single events
   std::int64_t start_ns_;
   std::optional<BurstExtractor> extractor_;  // only if the input is events, not bursts
   BurstHistory history_;

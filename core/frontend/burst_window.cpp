@@ -65,11 +65,14 @@ void BurstHistory::gather(std::int64_t begin_ns, std::int64_t end_ns,
   }
 }
 
-std::size_t BurstHistory::count(std::int64_t begin_ns, std::int64_t end_ns) const {
+std::size_t BurstHistory::count(std::int64_t begin_ns, std::int64_t end_ns, bool single_events) const {
   std::size_t sum = 0;
   const std::int64_t last = sliceOf(end_ns - 1);
   for (auto slice = firstFrom(sliceOf(begin_ns)); slice != slices_.end() && slice->index <= last; ++slice)
-    sum += slice->bursts.size();
+    sum += single_events ? slice->bursts.size()
+                         : static_cast<std::size_t>(
+                               std::count_if(slice->bursts.begin(), slice->bursts.end(),
+                                             [](const EdgeCrossing& burst) { return burst.events > 0; }));
   return sum;
 }
 
@@ -98,6 +101,7 @@ void keepSupported(Resolution resolution_px, int min_support, std::vector<EdgeCr
 
 BurstWindow::BurstWindow(const BoardScene& scene)
     : resolution_px_(scene.resolution_px),
+      single_events_(scene.single_events),
       pixels_(scene.pixels),
       dark_circles_(scene.board.circles == CircleShade::Dark),
       columns_((scene.resolution_px.width_px >> kCellShift) + 1),
@@ -136,7 +140,7 @@ void BurstWindow::assign(const std::vector<EdgeCrossing>& bursts, std::int64_t m
       out.stretch = pixels->stretch[indexOf(burst)];
     }
     out.time_s = static_cast<float>(static_cast<double>(burst.time_ns - middle_ns) * 1e-9);
-    out.events = burst.events;
+    out.events = std::max<float>(burst.events, 1.0f);
     out.lead = burst.brighter == dark_circles_ ? -1.0f : 1.0f;
   }
 }
@@ -145,6 +149,7 @@ void BurstWindow::gather(const BurstHistory& history, std::int64_t middle_ns, do
   const std::int64_t half_ns = nanosecondsFrom(half_window_s);
   gathered_.clear();
   history.gather(middle_ns - half_ns, middle_ns + half_ns, gathered_);
+  if (!single_events_) std::erase_if(gathered_, [](const EdgeCrossing& burst) { return burst.events == 0; });
 }
 
 void BurstWindow::fill(const BurstHistory& history, std::int64_t middle_ns, double half_window_s) {

@@ -23,7 +23,8 @@ class BurstHistory {
 
   // Appends all bursts with begin_ns <= time < end_ns.
   void gather(std::int64_t begin_ns, std::int64_t end_ns, std::vector<EdgeCrossing>& bursts) const;
-  std::size_t count(std::int64_t begin_ns, std::int64_t end_ns) const;  // to a slice's accuracy
+  // To a slice's accuracy.
+  std::size_t count(std::int64_t begin_ns, std::int64_t end_ns, bool single_events = false) const;
   // End of the time without bursts from this time on, to a slice's accuracy; empty without later bursts.
   std::optional<std::int64_t> nextAfter(std::int64_t from_ns) const;
   bool empty() const { return slices_.empty(); }
@@ -86,6 +87,7 @@ class BurstWindow {
   void gather(const BurstHistory& history, std::int64_t middle_ns, double half_window_s);
 
   Resolution resolution_px_;
+  bool single_events_;
   std::shared_ptr<const IdealPixels> pixels_;
   bool dark_circles_;
   int columns_, rows_;

@@ -361,10 +361,11 @@ std::vector<Laying> layingsOf(const CornerLattice& lattice, const Board& board) 
   return layings;
 }
 
-// The plane flow of the crossings within a box, each of which measures it along its normal. Errors are
-// relative to the speed.
+}  // namespace
+
+// Errors are relative to the speed.
 PlaneFlow flowOf(const std::vector<MovedCrossing>& crossings, const BoardScene& scene,
-                 const ImageFrame& frame, double reach_px) {
+                 const ImageFrame& frame) {
   constexpr int kRounds = 6;
   PlaneFlow flow = PlaneFlow::Zero();
   for (int round = 0; round < kRounds; ++round) {
@@ -381,7 +382,7 @@ PlaneFlow flowOf(const std::vector<MovedCrossing>& crossings, const BoardScene& 
         at = *ideal;
         row = idealPixelScale(*scene.camera, at).transpose().inverse() * row;
       }
-      if ((at - frame.centre_px).cwiseAbs().maxCoeff() > reach_px) continue;
+      if ((at - frame.centre_px).cwiseAbs().maxCoeff() > frame.scale_px) continue;
       const PlaneFlow a = frame.basis(at).transpose() * row;
       const double error = speed - a.dot(flow), scale = 0.25 * speed;
       const double w = (round == 0 ? 1.0 : cauchyWeight(error * error / (scale * scale))) / (speed * speed);
@@ -393,11 +394,9 @@ PlaneFlow flowOf(const std::vector<MovedCrossing>& crossings, const BoardScene& 
   return flow;
 }
 
-}  // namespace
-
 std::vector<BoardPlacement> placeOnBoard(const CornerLattice& lattice,
                                          const std::vector<SaddleCandidate>& saddles,
-                                         const std::vector<MovedCrossing>& crossings, const BoardScene& scene,
+                                         const FlowWithin& flow_within, const BoardScene& scene,
                                          std::int64_t time_ns, const GridOptions& options) {
   constexpr double kNearlyBest = 0.8;
   std::vector<MovingPoint> ideal;
@@ -425,7 +424,7 @@ std::vector<BoardPlacement> placeOnBoard(const CornerLattice& lattice,
         high = high.cwiseMax(ideal[saddle].centre_px);
       }
       frame = {0.5 * (low + high), std::max(0.5 * (high - low).norm(), 1.0)};
-      flow = flowOf(crossings, scene, frame, frame.scale_px);
+      flow = flow_within(frame);
     }
     BoardPlacement& placement = placements.emplace_back();
     placement.circles = std::move(laying.points);

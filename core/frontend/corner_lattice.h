@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -28,11 +29,17 @@ CornerLattice findCornerLattice(const std::vector<SaddleCandidate>& saddles,
                                 const std::vector<MovedCrossing>& crossings, Resolution resolution_px,
                                 const Board& board, const GridOptions& options);
 
-// Placements with nearly the largest number of corners on the board, in descending order. Their motion is
-// that of the crossings.
+// Motion of the image within a frame.
+using FlowWithin = std::function<PlaneFlow(const ImageFrame&)>;
+
+// Placements with nearly the largest number of corners on the board, in descending order.
 std::vector<BoardPlacement> placeOnBoard(const CornerLattice& lattice,
-                                         const std::vector<SaddleCandidate>& saddles,
-                                         const std::vector<MovedCrossing>& crossings, const BoardScene& scene,
-                                         std::int64_t time_ns, const GridOptions& options);
+                                         const std::vector<SaddleCandidate>& saddles, const FlowWithin& flow,
+                                         const BoardScene& scene, std::int64_t time_ns,
+                                         const GridOptions& options);
+
+// The plane flow of the crossings within a frame, each of which measures it along its normal.
+PlaneFlow flowOf(const std::vector<MovedCrossing>& crossings, const BoardScene& scene,
+                 const ImageFrame& frame);
 
 }  // namespace evical

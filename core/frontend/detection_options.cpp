@@ -291,4 +291,20 @@ const OptionTable<NormalFlowOptions>& NormalFlowOptions::table() {
   return table;
 }
 
+FrontEndOptions forSingleEvents(FrontEndOptions options) {
+  options.detection.window_travel_px = 5.0;
+  options.detection.max_window_s = 0.1;
+  options.grid.min_partial = 0.2;
+  TrackingOptions& tracking = options.tracking;
+  tracking.fit_travel_px = 5.0;
+  tracking.max_fit_half_window_s = 0.15;
+  tracking.last_gate_px = 1.5;
+  tracking.robust_scale_px = 0.6;
+  tracking.min_circle_bursts = 4;
+  tracking.prediction_sigma_px = 2.0;  // each window is searched
+  tracking.velocity_sigma_px_s = 50.0;
+  tracking.acceleration_sigma_px_s2 = 200.0;
+  return options;
+}
+
 }  // namespace evical

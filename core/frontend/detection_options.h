@@ -12,6 +12,8 @@ struct BurstOptions {
   double min_gap_s;
   double gap_to_pace;
   double max_burst_s;
+  // Not an option: edges with fewer events are handed out, too, as crossings of 0 events (burstsFor).
+  bool single_events = false;
 
   BurstOptions();  // the defaults
   constexpr explicit BurstOptions(NoDefaults) {}
@@ -186,5 +188,8 @@ struct FrontEndOptions {
   ExtentOptions extent;
   bool operator==(const FrontEndOptions&) const = default;
 };
+
+// For pixels that fire about one event per edge: there are fewer crossings, and they are less exact.
+FrontEndOptions forSingleEvents(FrontEndOptions options);
 
 }  // namespace evical

@@ -77,6 +77,7 @@ BurstExtractor::BurstExtractor(Resolution resolution_px, const BurstOptions& opt
       hand_out_ns_(nanosecondsFrom(longestHandOut_s(options))),
       gap_to_pace_(options.gap_to_pace),
       min_events_(options.min_events),
+      single_events_(options.single_events),
       pixels_(static_cast<std::size_t>(resolution_px.pixelCount())),
       times_ns_(pixels_.size(), KeptTimes{}),
       complete_until_ns_(std::numeric_limits<std::int64_t>::min()) {}
@@ -143,11 +144,17 @@ std::int64_t BurstExtractor::Burst::timeOf_ns(double kept_event) const {
 
 void BurstExtractor::end(std::uint32_t index, std::int64_t now_ns, std::vector<EdgeCrossing>& bursts) {
   Pixel& pixel = pixels_[index];
+  const Burst burst{pixel, times_ns_[index]};
+  const auto width = static_cast<std::uint32_t>(resolution_px_.width_px);
+  const auto x_px = static_cast<std::uint16_t>(index % width),
+             y_px = static_cast<std::uint16_t>(index / width);
   if (pixel.events < min_events_) {
     if (!pausedAt(pixel, now_ns)) pixel.level.step(pixel.brighter, pixel.events);
+    if (single_events_)
+      bursts.push_back(
+          {burst.timeOf_ns(0.5 * (pixel.kept - 1)), pixel.length_ns, x_px, y_px, 0, pixel.brighter});
     return;
   }
-  const Burst burst{pixel, times_ns_[index]};
   const int first = ownBegin(burst), stride = 1 << pixel.stride_log2;
   const std::int64_t begin_ns = pixel.first_ns + burst.times_ns[static_cast<std::size_t>(first)];
   const std::int64_t last_ns = pixel.last_ns();
@@ -158,9 +165,7 @@ void BurstExtractor::end(std::uint32_t index, std::int64_t now_ns, std::vector<E
        isRest(begin_ns - before_ns, median_ns - begin_ns), isRest(now_ns - last_ns, last_ns - median_ns)});
   pixel.quiet_since_ns = last_ns;
   if (!middle) return;
-  const auto width = static_cast<std::uint32_t>(resolution_px_.width_px);
-  bursts.push_back({burst.timeOf_ns(first + middle->event / stride), pixel.length_ns,
-                    static_cast<std::uint16_t>(index % width), static_cast<std::uint16_t>(index / width),
+  bursts.push_back({burst.timeOf_ns(first + middle->event / stride), pixel.length_ns, x_px, y_px,
                     static_cast<std::uint16_t>(middle->whole_events), pixel.brighter});
 }
 

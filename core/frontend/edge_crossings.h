@@ -60,7 +60,7 @@ struct EdgeCrossing {
   std::int64_t time_ns;      // median of its events' times, including those missing at a turning edge
   std::int32_t duration_ns;  // from its first to its last event
   std::uint16_t x_px, y_px;
-  std::uint16_t events;  // number that an edge without turning fires here
+  std::uint16_t events;  // number that an edge without turning fires here; 0: too few for a burst
   bool brighter;
 };
 
@@ -128,6 +128,7 @@ class BurstExtractor {
   std::int64_t longest_gap_ns_, shortest_gap_ns_, longest_burst_ns_, check_interval_ns_, hand_out_ns_;
   double gap_to_pace_;
   int min_events_;
+  bool single_events_;
   std::vector<Pixel> pixels_;
   std::vector<KeptTimes> times_ns_;  // by pixel
   std::deque<Check> checks_;

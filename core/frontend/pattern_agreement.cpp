@@ -1,5 +1,7 @@
 #include "core/frontend/pattern_agreement.h"
 
+#include "core/geometry/camera_model.h"
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -8,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace evical {
 namespace {
@@ -24,7 +27,7 @@ struct BoardCrossing {
 };
 
 std::vector<BoardCrossing> crossingsOnBoard(const BoardMotion& motion, const BurstWindow& window,
-                                            const EdgeMap& map, double half_window_s) {
+                                            const EdgeMap& map, double half_window_s, double beyond) {
   const Eigen::Matrix3d board_from_ideal = motion.ideal_from_board.inverse();
   std::vector<BoardCrossing> crossings;
   for (const WindowBurst& burst : window.bursts()) {
@@ -36,7 +39,7 @@ std::vector<BoardCrossing> crossingsOnBoard(const BoardMotion& motion, const Bur
     const Eigen::Vector2d at_middle = pixel - motion.travel(pixel, time_s);
     const Eigen::Vector3d on_board = board_from_ideal * at_middle.homogeneous();
     const Eigen::Vector2d at_m = on_board.hnormalized();
-    if (!map.contains(at_m)) continue;
+    if (!map.contains(at_m, beyond)) continue;
     const Eigen::Matrix2d m_per_px =
         (board_from_ideal.topLeftCorner<2, 2>() - at_m * board_from_ideal.block<1, 2>(2, 0)) / on_board.z();
     // Cosine between the motion and the normals of edges, which are the rows of the inverse map.
@@ -90,6 +93,119 @@ Agreement agreementOf(const std::vector<BoardCrossing>& crossings, const Eigen::
   return agreement;
 }
 
+// The edges of the lattice of a checkerboard, far around its present placement: those that should cause
+// events, and those that do. Each edge is looked at once, and each rival counts its own ones.
+class LatticeEdges {
+ public:
+  LatticeEdges(const BoardMotion& laid, const std::vector<BoardCrossing>& crossings, const BoardScene& scene,
+               double half_window_s)
+      : spacing_m_(scene.board.spacing_m),
+        columns_(3 * (scene.board.cols + kBorder)),
+        rows_(3 * (scene.board.rows + kBorder)),
+        first_column_(-columns_ / 3),
+        first_row_(-rows_ / 3),
+        edges_(static_cast<std::size_t>(2 * columns_ * rows_)) {
+    for (const BoardCrossing& crossing : crossings) {
+      mark(crossing, true, crossing.along_x);
+      mark(crossing, false, crossing.along_y);
+    }
+    for (int row = 0; row < rows_; ++row)
+      for (int column = 0; column < columns_; ++column)
+        for (const bool vertical : {true, false})
+          edges_[indexOf(column, row, vertical)].expected =
+              isExpected(laid, scene, spacing_m_ * Eigen::Vector2d(column + first_column_, row + first_row_),
+                         vertical ? Eigen::Vector2d::UnitY() : Eigen::Vector2d::UnitX(), half_window_s);
+  }
+
+  struct Count {
+    int expected = 0, seen = 0, opposite = 0;  // with events; with events of the opposite edge
+  };
+  Count countOf(const std::vector<PrintedEdge>& own, const Eigen::Matrix3d& shift) const {
+    Count count;
+    for (const PrintedEdge& edge : own) {
+      const Eigen::Vector2d middle =
+          (shift * (0.5 * (edge.from_m + edge.to_m)).homogeneous()).head<2>() / spacing_m_;
+      const Eigen::Vector2d paper = shift.topLeftCorner<2, 2>() * edge.paper;
+      const bool vertical = std::abs(paper.x()) > std::abs(paper.y());
+      const std::optional<std::size_t> index = edgeAt(middle, vertical);
+      if (!index || !edges_[*index].expected) continue;
+      const Edge& at = edges_[*index];
+      const std::size_t minus = paper.sum() < 0.0 ? 1 : 0;
+      ++count.expected;
+      count.seen += at.seen[minus];
+      count.opposite += at.seen[1 - minus];
+    }
+    return count;
+  }
+
+ private:
+  static constexpr int kBorder = 2;  // squares beyond the corners
+
+  struct Edge {
+    bool expected = false;
+    std::array<bool, 2> seen = {};  // paper in the positive and the negative direction
+  };
+
+  std::size_t indexOf(int column, int row, bool vertical) const {
+    return static_cast<std::size_t>((row * columns_ + column) * 2 + (vertical ? 1 : 0));
+  }
+
+  // `place` in squares.
+  std::optional<std::size_t> edgeAt(const Eigen::Vector2d& place, bool vertical) const {
+    const auto whole = [](double at, bool line) {
+      return static_cast<int>(line ? std::round(at) : std::floor(at));
+    };
+    const int column = whole(place.x(), vertical) - first_column_,
+              row = whole(place.y(), !vertical) - first_row_;
+    if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return std::nullopt;
+    return indexOf(column, row, vertical);
+  }
+
+  void mark(const BoardCrossing& crossing, bool vertical, int direction) {
+    constexpr double kEnds = 0.1;  // of an edge: crossings there may be of the next one
+    if (direction < 0) return;
+    const Eigen::Vector2d place = crossing.at_m / spacing_m_;
+    const double across = vertical ? place.x() : place.y(), along = vertical ? place.y() : place.x();
+    if (std::abs(across - std::round(across)) * spacing_m_ > crossing.tolerance_m) return;
+    if (std::abs(along - std::floor(along) - 0.5) > 0.5 - kEnds) return;
+    if (const std::optional<std::size_t> edge = edgeAt(place, vertical))
+      edges_[*edge].seen[static_cast<std::size_t>(direction & 1)] = true;
+  }
+
+  static bool isExpected(const BoardMotion& laid, const BoardScene& scene, const Eigen::Vector2d& from_m,
+                         const Eigen::Vector2d& along, double half_window_s) {
+    constexpr double kMinTravel_px = 1.2, kMargin_px = 2.0;
+    const auto imageOf = [&](double part) {
+      return Eigen::Vector3d(laid.ideal_from_board *
+                             (from_m + part * scene.board.spacing_m * along).homogeneous());
+    };
+    const Eigen::Vector3d middle = imageOf(0.5), begin = imageOf(0.0), end = imageOf(1.0);
+    if (!(middle.z() > 0.0) || !(begin.z() > 0.0) || !(end.z() > 0.0)) return false;
+    const Eigen::Vector2d ideal = middle.hnormalized(),
+                          normal = (end.hnormalized() - begin.hnormalized()).unitOrthogonal(),
+                          velocity = laid.velocityAt(ideal);
+    const double across = std::abs(normal.dot(velocity));
+    if (across < kMinCosine * velocity.norm() || 2.0 * half_window_s * across < kMinTravel_px) return false;
+    const Eigen::Vector2d at = scene.camera ? pixelFromIdeal(*scene.camera, ideal) : ideal;
+    return at.x() > kMargin_px && at.y() > kMargin_px &&
+           at.x() < scene.resolution_px.width_px - 1 - kMargin_px &&
+           at.y() < scene.resolution_px.height_px - 1 - kMargin_px;
+  }
+
+  double spacing_m_;
+  int columns_, rows_, first_column_, first_row_;
+  std::vector<Edge> edges_;
+};
+
+// How much an edge without events speaks against a placement, compared with how much one with events speaks
+// for it: the ratio of the logarithms of their probabilities on and off the board.
+double weightOfAbsence(const LatticeEdges::Count& laid) {
+  const double expected = std::max(laid.expected, 1);
+  const double on_board = std::clamp(laid.seen / expected, 0.3, 0.97),
+               beside = std::clamp(laid.opposite / expected, 0.05, 0.5 * on_board);
+  return std::log((1.0 - beside) / (1.0 - on_board)) / std::log(on_board / beside);
+}
+
 }  // namespace
 
 PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts,
@@ -98,7 +214,7 @@ PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d
   // 0.5 %.
   constexpr double kLargestContradiction = 0.015;
   const std::vector<BoardCrossing> crossings =
-      crossingsOnBoard(laid, window, scene.edges->map, half_window_s);
+      crossingsOnBoard(laid, window, scene.edges->map, half_window_s, 0.0);
   PrintMatch best;
   int best_value = -1;
   const auto consider = [&](const std::shared_ptr<const BoardEdges>& edges) {
@@ -122,21 +238,33 @@ PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d
 std::vector<PlacementScore> rivalPatterns(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts,
                                           const BurstWindow& window, const BoardScene& scene,
                                           double half_window_s, const TrackingOptions& options) {
+  constexpr double kBeyond = 0.5;  // of the board's size: rivals explain edges there, which it does not
   const EdgeMap& map = scene.edges->map;
-  const std::vector<BoardCrossing> crossings = crossingsOnBoard(laid, window, map, half_window_s);
+  const std::vector<BoardCrossing> crossings = crossingsOnBoard(laid, window, map, half_window_s, kBeyond);
+  const auto on_board = static_cast<double>(
+      std::count_if(crossings.begin(), crossings.end(),
+                    [&](const BoardCrossing& crossing) { return map.contains(crossing.at_m); }));
   const auto points =
       static_cast<double>(std::max(expectedCircles(laid, scene, half_window_s), options.min_circle_bursts));
-  const double per_point = std::max(static_cast<double>(crossings.size()) / points, 1.0);
+  const double per_point = std::max(on_board / points, 1.0);
+  // Between tags, bits distinguish placements better.
+  std::optional<LatticeEdges> lattice;
+  if (!scene.board.hasTags()) lattice.emplace(laid, crossings, scene, half_window_s);
+  const std::vector<PrintedEdge>& edges = scene.edges->edges;
+  LatticeEdges::Count own;
+  if (lattice) own = lattice->countOf(edges, Eigen::Matrix3d::Identity());
+  const double per_edge = weightOfAbsence(own) * points / std::max(own.expected, 1);
   std::vector<PlacementScore> rivals;
   for (const Eigen::Matrix3d& shift : shifts) {
     const Agreement agreement = agreementOf(crossings, shift, map);
     PlacementScore& rival = rivals.emplace_back();
     rival.shift = shift;
-    rival.measured = static_cast<int>(std::lround(agreement.explained / per_point));
-    rival.missing = static_cast<int>(std::lround(agreement.contradicted / per_point));
+    rival.measured = agreement.explained / per_point;
+    rival.missing = agreement.contradicted / per_point;
+    if (!lattice) continue;
+    const LatticeEdges::Count count = lattice->countOf(edges, shift);
+    rival.absent = per_edge * (count.expected - count.seen);
   }
-  std::stable_sort(rivals.begin(), rivals.end(),
-                   [](const PlacementScore& a, const PlacementScore& b) { return a.value() > b.value(); });
   return rivals;
 }
 

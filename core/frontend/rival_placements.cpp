@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace evical {
@@ -59,7 +60,7 @@ class LatticeAround {
       score.measured += measured_[at];
       expected += expected_[at];
     }
-    score.missing = std::max(expected - score.measured, 0);
+    score.missing = std::max(expected - score.measured, 0.0);
     return score;
   }
 
@@ -98,9 +99,12 @@ std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid,
   std::vector<PlacementScore> rivals;
   for (const Eigen::Matrix3d& shift : shifts)
     rivals.push_back(lattice.score(shift, scene.board.pointCount()));
+  return rivals;
+}
+
+void sortByValue(std::vector<PlacementScore>& rivals) {
   std::stable_sort(rivals.begin(), rivals.end(),
                    [](const PlacementScore& a, const PlacementScore& b) { return a.value() > b.value(); });
-  return rivals;
 }
 
 BoardMotion shifted(const BoardMotion& motion, const Eigen::Matrix3d& shift) {
@@ -131,9 +135,26 @@ std::vector<Eigen::Matrix3d> rivalShifts(const BoardScene& scene, double min_ove
 PlacementWatch::PlacementWatch(const BoardScene& scene, const GridOptions& options)
     : options_(options), shifts_(rivalShifts(scene, options.min_rival_overlap)) {}
 
-void PlacementWatch::begin() {
+void PlacementWatch::begin(bool distinguished) {
   contradicting_ = agreeing_ = wait_ = 0;
-  distinguished_.reset();
+  distinguished_ = distinguished;
+  sums_.clear();
+}
+
+double PlacementWatch::sumUp(std::vector<PlacementScore>& rivals) {
+  constexpr double kKept = 0.9;
+  if (sums_.empty()) {
+    squared_weights_ = 0.0;
+    for (const Eigen::Matrix3d& shift : shifts_) sums_.push_back({shift});
+  }
+  for (std::size_t k = 0; k < sums_.size(); ++k) {
+    sums_[k].measured = kKept * sums_[k].measured + rivals[k].measured;
+    sums_[k].missing = kKept * sums_[k].missing + rivals[k].missing;
+    sums_[k].absent = kKept * sums_[k].absent + rivals[k].absent;
+  }
+  rivals = sums_;
+  squared_weights_ = kKept * kKept * squared_weights_ + 1.0;
+  return std::sqrt(squared_weights_);
 }
 
 std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, const WindowTrace& trace,
@@ -143,28 +164,51 @@ std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, c
     agreed(options_.contradicting_looks);  // immediately: no rival explains more
     return std::nullopt;
   }
-  const std::vector<PlacementScore> rivals =
+  std::vector<PlacementScore> rivals =
       rivalPlacements(*trace.motion, shifts_, window, scene, trace.report.half_width_s, options);
+  const double margin = options_.ambiguity_margin * (scene.edges ? sumUp(rivals) : 1.0);
+  sortByValue(rivals);
   const auto isLaid = [](const PlacementScore& rival) { return rival.shift.isIdentity(0.0); };
   const PlacementScore laid = *std::find_if(rivals.begin(), rivals.end(), isLaid);
   // Sorted by value. A rival that is better only by fewer missing circles is ignored: part of the board may
   // be covered.
   const auto best = std::find_if(rivals.begin(), rivals.end(),
                                  [&](const PlacementScore& rival) { return rival.measured > laid.measured; });
-  if (best != rivals.end() && best->value() > laid.value() + options_.ambiguity_margin)
-    return contradicted(best->shift);
+  if (best != rivals.end() && best->value() > laid.value() + margin) return contradicted(best->shift);
   const auto all = [&](auto&& behind) {
     return std::all_of(rivals.begin(), rivals.end(),
                        [&](const PlacementScore& rival) { return isLaid(rival) || behind(rival); });
   };
-  distinguished_ = distinguished_.value_or(false) || all([&](const PlacementScore& rival) {
-                     return rival.value() + options_.ambiguity_margin <= laid.value();
-                   });
+  distinguished_ =
+      distinguished_ || all([&](const PlacementScore& rival) { return laid.excludes(rival, margin); });
   // Covered or resting circles are missing without being elsewhere: only visible circles are conclusive.
-  const bool surely = all([&](const PlacementScore& rival) {
-    return rival.measured + options_.ambiguity_margin < laid.measured;
-  });
+  const bool surely =
+      all([&](const PlacementScore& rival) { return rival.measured + margin < laid.measured; });
   agreed(surely ? agreeing_ + 1 : 0);
+  return std::nullopt;
+}
+
+std::optional<Eigen::Matrix3d> PlacementWatch::continuationOf(const BoardMotion& expected,
+                                                              const BoardMotion& found,
+                                                              const Board& board) const {
+  constexpr double kNear = 0.6, kFarthest = 1.3;  // of a spacing
+  const Eigen::Vector2d low = board.corner_m(), high = low + board.extent_m();
+  const std::array<Eigen::Vector2d, 3> places = {low, high, Eigen::Vector2d(low.x(), high.y())};
+  const auto at = [](const Eigen::Matrix3d& h, const Eigen::Vector2d& place) -> Eigen::Vector2d {
+    return (h * place.homogeneous()).hnormalized();
+  };
+  const Eigen::Vector2d middle = low + 0.5 * board.extent_m();
+  const double spacing_px = (at(expected.ideal_from_board, middle + Eigen::Vector2d(board.spacing_m, 0.0)) -
+                             at(expected.ideal_from_board, middle))
+                                .norm();
+  for (const Eigen::Matrix3d& shift : shifts_) {
+    const Eigen::Matrix3d h = found.ideal_from_board * shift;
+    double farthest_px = 0.0;
+    for (const Eigen::Vector2d& place : places)
+      farthest_px = std::max(farthest_px, (at(h, place) - at(expected.ideal_from_board, place)).norm());
+    const double middle_px = (at(h, middle) - at(expected.ideal_from_board, middle)).norm();
+    if (middle_px < kNear * spacing_px && farthest_px < kFarthest * spacing_px) return shift;
+  }
   return std::nullopt;
 }
 
@@ -176,13 +220,14 @@ std::optional<Eigen::Matrix3d> PlacementWatch::contradicted(const Eigen::Matrix3
   wait_ = 1;
   if (contradicting_ < options_.contradicting_looks) return std::nullopt;
   contradicting_ = 0;
+  sums_.clear();
   return favourite_;
 }
 
 void PlacementWatch::agreed(int in_a_row) {
   contradicting_ = 0;
   agreeing_ = in_a_row;
-  distinguished_ = distinguished_.value_or(false) || isSettled();
+  distinguished_ = distinguished_ || isSettled();
   wait_ = isSettled() ? options_.look_every_windows : 1;
 }
 

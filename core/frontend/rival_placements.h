@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -17,18 +18,27 @@ namespace evical {
 // Agreement of a placement of the board with a window.
 struct PlacementScore {
   Eigen::Matrix3d shift =
-      Eigen::Matrix3d::Identity();  // of the board's plane: from the rival to the present placement
-  int measured = 0, missing = 0;    // circles that it explains, and circles in view that it does not
+      Eigen::Matrix3d::Identity();       // of the board's plane: from the rival to the present placement
+  double measured = 0.0, missing = 0.0;  // points that it explains, and points in view that it does not
+  double absent = 0.0;                   // of squares: edges in view without events, in the unit of points
 
-  int value() const { return measured - missing; }
+  double value() const { return measured - missing - absent; }
+  // True if this one is ahead of the rival even if something covers the edges without events.
+  bool excludes(const PlacementScore& rival, double margin) const {
+    const double ahead = measured - missing - (rival.measured - rival.missing);
+    return std::min(ahead, value() - rival.value()) >= margin;
+  }
 };
 
-// The present placement of the board, and all others on the same lattice (`shifts` from
-// latticeShifts): best first.
+// The present placement of the board, and all others on the same lattice, in the order of `shifts`
+// (rivalShifts).
 std::vector<PlacementScore> rivalPlacements(const BoardMotion& laid,
                                             const std::vector<Eigen::Matrix3d>& shifts,
                                             const BurstWindow& window, const BoardScene& scene,
                                             double half_window_s, const TrackingOptions& options);
+
+// Best first.
+void sortByValue(std::vector<PlacementScore>& rivals);
 
 // Motions of the board's plane to all rivals (latticeShifts, patternShifts).
 std::vector<Eigen::Matrix3d> rivalShifts(const BoardScene& scene, double min_overlap);
@@ -45,7 +55,8 @@ class PlacementWatch {
  public:
   PlacementWatch(const BoardScene& scene, const GridOptions& options);
 
-  void begin();  // after a new detection of the board: all placements are open
+  // After a new detection of the board: all placements are open, unless its search distinguished them.
+  void begin(bool distinguished);
   bool isDue() const { return wait_ <= 1; }
   void skip() { --wait_; }  // a window without a check
 
@@ -54,22 +65,32 @@ class PlacementWatch {
   std::optional<Eigen::Matrix3d> look(const BurstWindow& window, const WindowTrace& trace,
                                       const BoardScene& scene, const TrackingOptions& options);
 
+  // The shift to the rival that is where the board was expected; empty if none is, or if two might be.
+  std::optional<Eigen::Matrix3d> continuationOf(const BoardMotion& expected, const BoardMotion& found,
+                                                const Board& board) const;
+
   // The visible circles of the last checks exclude all other placements.
   bool isSettled() const { return agreeing_ >= options_.contradicting_looks; }
-  // False if no check since begin(), or since the last contradiction, ranked the board ahead of all rivals,
-  // as is required of a search. True without checks.
-  bool isDistinguished() const { return distinguished_.value_or(true); }
+  // False if neither the search nor a check since the last contradiction ranked the board ahead of all
+  // rivals.
+  bool isDistinguished() const { return distinguished_; }
 
  private:
   std::optional<Eigen::Matrix3d> contradicted(const Eigen::Matrix3d& shift);
   void agreed(int in_a_row);
+  // Squares: adds a window's scores to those of the windows before, which count less and less. Returns how
+  // many times larger differences by chance are than in one window.
+  double sumUp(std::vector<PlacementScore>& rivals);
 
   GridOptions options_;
   std::vector<Eigen::Matrix3d> shifts_;
   Eigen::Matrix3d favourite_ = Eigen::Matrix3d::Identity();
   int contradicting_ = 0, agreeing_ = 0;  // consecutive checks; a check agrees if it leaves no rival open
   int wait_ = 0;                          // windows until the next check
-  std::optional<bool> distinguished_;     // empty: no check yet
+  bool distinguished_ = false;
+  // Squares: sums over windows, by shift, and of the squares of the windows' weights.
+  std::vector<PlacementScore> sums_;
+  double squared_weights_ = 0.0;
 };
 
 }  // namespace evical

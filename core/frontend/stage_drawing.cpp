@@ -134,6 +134,18 @@ void paintLattice(DrawingCanvas& canvas, const BoardSearch& search) {
   }
 }
 
+// The covariance ellipse; of a corner that is known in one direction only, a line along the other one.
+void paintSigmas(DrawingCanvas& canvas, const CircleObservation& point, const BoardScene& scene,
+                 const DrawingStyle& style) {
+  constexpr double kUnknown_px = 3.0;
+  const auto known = onlyKnownDirection(point.covariance_px2);
+  if (!known)
+    return canvas.outline(ellipse(point.centre_px, point.covariance_px2, style.covariance_sigmas, scene),
+                          kBoard);
+  const Eigen::Vector2d along = kUnknown_px * known->unitOrthogonal();
+  canvas.line(toSensor(point.centre_px - along, scene), toSensor(point.centre_px + along, scene), kBoard);
+}
+
 }  // namespace
 
 RgbImage drawBursts(const BurstWindow& window, const BoardScene& scene, const std::string& title,
@@ -187,11 +199,11 @@ RgbImage drawTrackedWindow(const BurstWindow& window, const WindowTrace& trace, 
   for (const CircleObservation& circle : trace.circles) {
     const Eigen::Vector2d centre = toSensor(circle.centre_px, scene);
     canvas.cross(centre, kCentre);
-    canvas.outline(ellipse(circle.centre_px, circle.covariance_px2, style.covariance_sigmas, scene), kBoard);
+    paintSigmas(canvas, circle, scene, style);
     canvas.label(centre, std::to_string(circle.circle), kCentre);
   }
   canvas.title(
-      print("%.3f s: %s   %d bursts, %zu of %d circles, fit %.2f px RMS over %d, radius offset %+.2f px",
+      print("%.3f s: %s   %d bursts, %zu of %d points, fit %.2f px RMS over %d, radius offset %+.2f px",
             trace.report.time_s, trace.held() ? "tracked" : "lost", trace.report.events, trace.circles.size(),
             scene.board.pointCount(), motion.residual_rms_px, motion.bursts, motion.radius_offset_px));
   canvas.legend({{"brighter", kBrighter},

@@ -27,9 +27,10 @@ double firstGate_px(const BoardMotion& last, const WindowSlot& slot, const Front
   return options.tracking.first_gate_px * (lost ? kLostGateFactor : 1.0);
 }
 
-TrackingEnd endOf(int found, int expected, const FrontEndOptions& options) {
+TrackingEnd endOf(int found, int expected, bool single_events, const FrontEndOptions& options) {
   if (found < options.grid.min_circles) return TrackingEnd::TooFewCircles;
-  if (found < kMinExpected * expected) return TrackingEnd::TooFewOfExpected;
+  if (found < (single_events ? kMinExpectedForSingleEvents : kMinExpected) * expected)
+    return TrackingEnd::TooFewOfExpected;
   return TrackingEnd::Held;
 }
 
@@ -75,7 +76,7 @@ WindowTrace trackWindow(const TrackingInput& input, const WindowSlot& slot, cons
                                  detail == TraceDetail::Everything ? &trace.measurement : nullptr);
   trace.report.circles = static_cast<int>(trace.circles.size());
   trace.expected = expectedCircles(*trace.motion, scene, slot.half_s());
-  trace.ended = endOf(trace.report.circles, trace.expected, input.options);
+  trace.ended = endOf(trace.report.circles, trace.expected, scene.single_events, input.options);
   if (trace.held()) trace.report.outcome = outcomeOf(trace.report.circles, scene, input.options.grid);
   return trace;
 }

@@ -32,7 +32,7 @@ struct TrackingInput {
 };
 
 // Smallest share of the expected circles in a tracked board from which tracking continues.
-inline constexpr double kMinExpected = 0.5;
+inline constexpr double kMinExpected = 0.5, kMinExpectedForSingleEvents = 0.25;
 
 enum class TrackingEnd {
   NoFit,             // too few bursts at expected edges

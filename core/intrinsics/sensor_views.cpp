@@ -43,8 +43,10 @@ std::vector<SensorView> sensorViews(const BoardObservations& observations, const
                                     const std::optional<CameraIntrinsics>& detection_intrinsics,
                                     const IntrinsicsOptions& options) {
   std::vector<SensorView> views;
-  constexpr int kMany = 50;  // of a board with more points, a smaller share suffices
-  const double least = std::max(4.0, options.min_circles * std::min(board.pointCount(), kMany));
+  constexpr int kMany = 50;                // of a board with more points, a smaller share suffices
+  constexpr double kOfSingleEvents = 0.2;  // most corners have too few of them
+  const double share = observations.single_events ? kOfSingleEvents : options.min_circles;
+  const double least = std::max(4.0, share * std::min(board.pointCount(), kMany));
   for (const BoardView& view : observations.views) {
     if (static_cast<double>(view.circles.size()) < least) continue;
     SensorView& out = views.emplace_back();

@@ -174,6 +174,19 @@ Session dvs128Blinking(const QString& real, int rows, int cols) {
   return session;
 }
 
+Session dvs128Moving(const QString& real) {
+  Session session;
+  session.board.type = BoardType::Checkerboard;
+  session.board.rows = 6;
+  session.board.cols = 9;
+  session.board.spacing_m = 0.03;
+  session.board.radius_m = 0.0;
+  session.recording = (real + "/dvs128_checkerboard_moving/chessboard.aedat").toStdString();
+  session.cameras.push_back({"camera", "events", {}, {}});
+  session.reference = "camera";
+  return session;
+}
+
 Session pictures(const QDir& from, const QString& pattern, const QDir& work) {
   work.mkpath("pictures");
   for (const QString& name : from.entryList({pattern}, QDir::Files, QDir::Name))

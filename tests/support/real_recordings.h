@@ -27,6 +27,9 @@ double raysFromEuroc_deg(const CameraState& camera);
 Session efcalib(const QString& real, const QDir& work);
 // A checkerboard on a flashing screen, in nine recordings of a DVS128.
 Session dvs128Blinking(const QString& real, int rows, int cols);
+// A printed checkerboard before a DVS128 moved by hand, of which most edges fire one event at a pixel.
+// Between 8 and 35 s most of the board is in view.
+Session dvs128Moving(const QString& real);
 // Images of a checkerboard of 9 x 6 inner corners, without times.
 Session pictures(const QDir& from, const QString& pattern, const QDir& work);
 

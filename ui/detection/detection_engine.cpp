@@ -54,6 +54,10 @@ class DetectionEngine::Analyst {
     question.scene = scene_;
     question.options = task.options;
     question.observations = task.observations;
+    if (question.observations && question.observations->single_events) {
+      question.options = forSingleEvents(question.options);
+      question.scene = scene_for_single_events_;
+    }
     const TimeSpan needed = neededBursts_s(question);
     const auto at_ns = [&](double time_s) { return question.start_ns + nanosecondsFrom(time_s); };
     band_->cover(at_ns(needed.begin_s), at_ns(needed.end_s));
@@ -104,9 +108,13 @@ class DetectionEngine::Analyst {
     if (!scene_ || task.sight != sight_ || source.resolution_px != scene_->resolution_px) {
       sight_ = task.sight;
       scene_ = std::make_shared<BoardScene>(sight_.board, source.resolution_px, sight_.lens);
+      BoardScene for_single_events = *scene_;
+      for_single_events.single_events = true;
+      scene_for_single_events_ = std::make_shared<BoardScene>(std::move(for_single_events));
     }
-    if (band_ && task.options.bursts == bursts_ && source.cache == cache_) return;
-    bursts_ = task.options.bursts;
+    const BurstOptions bursts = burstsFor(sight_.board, task.options.bursts);
+    if (band_ && bursts == bursts_ && source.cache == cache_) return;
+    bursts_ = bursts;
     cache_ = source.cache;
     band_.emplace(cache_, source.resolution_px, bursts_);
   }
@@ -125,7 +133,7 @@ class DetectionEngine::Analyst {
 
   DetectionEngine& engine_;
   DetectionSetup sight_;
-  std::shared_ptr<const BoardScene> scene_;
+  std::shared_ptr<const BoardScene> scene_, scene_for_single_events_;
   BurstOptions bursts_;
   std::shared_ptr<const EventCache> cache_;
   std::optional<BurstBand> band_;

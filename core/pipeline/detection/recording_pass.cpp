@@ -157,7 +157,7 @@ class ReadingPass {
       intake.kind = recording_.kind(camera);
       if (intake.kind == CameraKind::Events)
         intake.events.emplace(camera, session.cameras[camera], resolution_px,
-                              session.options.front_end->bursts,
+                              burstsFor(session.boardOf(camera), session.options.front_end->bursts),
                               session.board_blinks ? EventUse::Raw : EventUse::Bursts);
       if (intake.kind == CameraKind::Frames) intake.rate.emplace(*session.options.frames);
     }

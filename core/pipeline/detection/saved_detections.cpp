@@ -55,6 +55,7 @@ std::string cameraYaml(const SessionCamera& camera, const DetectionResult& detec
       kKinds.at(static_cast<std::size_t>(seen.kind)), seen.events, size.width_px, size.height_px,
       endsYaml(seen.extent.rows), endsYaml(seen.extent.cols));
   if (seen.stamp_step_s > 0.0) text += fmt::format("    stamp_step_s: {}\n", seen.stamp_step_s);
+  if (seen.single_events) text += "    single_events: true\n";
   if (seen.polarity_delay)
     text += fmt::format("    polarity_delay: {{later_s: {}, std_s: {}}}\n", seen.polarity_delay->later_s,
                         seen.polarity_delay->std_s);
@@ -120,6 +121,8 @@ void restoreCamera(const YamlNode& root, const Session& session, std::size_t k,
   seen.events = static_cast<std::uint64_t>(std::max<std::int64_t>(0, map["measurements"].nanoseconds()));
   seen.extent = {endsFrom(map["extent"]["rows"]), endsFrom(map["extent"]["cols"])};
   if (const auto step = map.find("stamp_step_s")) seen.stamp_step_s = step->real();
+  if (const auto single = map.find("single_events"))
+    seen.single_events = single->choice({"false", "true"}) == 1;
   if (const auto delay = map.find("polarity_delay"))
     seen.polarity_delay = PolarityDelay{(*delay)["later_s"].real(), (*delay)["std_s"].real()};
   restored.detections.resolutions_px.push_back(checkedResolution(map, camera));

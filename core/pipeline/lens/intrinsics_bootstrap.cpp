@@ -107,7 +107,7 @@ class IntrinsicsBootstrap {
   void detectInSlice() {
     if (slice_.empty() || enough()) return;
     std::vector<EdgeCrossing> bursts;
-    BurstExtractor extractor(resolution_px_, session_.options.front_end->bursts);
+    BurstExtractor extractor(resolution_px_, burstsFor(session_.board, session_.options.front_end->bursts));
     extractor.add(slice_, bursts);
     extractor.finish(bursts);
     slice_.clear();

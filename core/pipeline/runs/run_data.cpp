@@ -81,7 +81,7 @@ EVICAL_FIELDS(LatticeEnds, beyond_in_view, beyond_seen, edge_in_view, edge_missi
 EVICAL_FIELDS(BoardExtent, rows, cols);
 EVICAL_FIELDS(PolarityDelay, later_s, std_s);
 EVICAL_FIELDS(BoardObservations, camera, kind, views, windows, extent, events, polarity_delay, narrowest_px,
-              stamp_step_s);
+              single_events, stamp_step_s);
 EVICAL_FIELDS(ImuNoise, gyroscope_density, accelerometer_density, gyroscope_random_walk,
               accelerometer_random_walk);
 EVICAL_FIELDS(ImuSample, time_ns, angular_rate_rad_s, specific_force_m_s2, measured_by);

@@ -122,6 +122,7 @@ class TestSquares : public QObject {
   void boardOfOtherSize_isSeen_data();
   void boardOfOtherSize_isSeen();
   void motionAlongOneLine_leavesCornersUnknownAlongIt();
+  void singleEvents_showCheckerboard();
 };
 
 void TestSquares::board_isFound_data() {
@@ -219,6 +220,20 @@ void TestSquares::motionAlongOneLine_leavesCornersUnknownAlongIt() {
     }
   QVERIFY(corners > 100);
   QVERIFY2(half_known > 0.9 * corners, qPrintable(QString("%1 of %2").arg(half_known).arg(corners)));
+}
+
+// High thresholds: most edges fire one event at a pixel, as in old sensors.
+void TestSquares::singleEvents_showCheckerboard() {
+  Scenario scenario = davis346Before(squares(BoardType::Checkerboard), {});
+  scenario.cameras[0].pixel.threshold_on = scenario.cameras[0].pixel.threshold_off = 1.2;
+  scenario.cameras[0].pixel.threshold_mismatch = 0.1;
+  const BoardObservations found = detect(scenario, scenario.board);
+  QVERIFY(found.single_events);
+  QVERIFY2(foundShare(found) >= 0.6, qPrintable(QString::number(foundShare(found))));
+  const CornerErrors errors = errorsOf(scenario, found);
+  QVERIFY(errors.corners > 200);
+  QVERIFY2(errors.rms_px < 0.4, qPrintable(QString::number(errors.rms_px)));
+  QVERIFY2(errors.max_px < 3.0, qPrintable(QString::number(errors.max_px)));
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 #include "core/format/gray_png.h"
 #include "core/frames/gray_image.h"
 #include "core/numerics/angles.h"
+#include "core/pipeline/detection/recording_pass.h"
 #include "core/pipeline/detection/session_recording.h"
 #include "core/pipeline/simulate/simulation.h"
 #include "core/synthetic/scenario_yaml.h"
 #include "tests/core/recording/sample_recording.h"
+#include "tests/support/real_recordings.h"
 #include "tests/support/test_folders.h"
 #include "tests/support/test_program.h"
 
@@ -54,6 +56,7 @@ class TestSessionRecording : public QObject {
   void units_areThoseOfTheSession();
   void twoFilesOfOneImu_areJoined();
   void twoImusOfOneTable_areRead();
+  void realCheckerboard_isFoundInSingleEvents();
   void clocksWithoutRelation_areRefused();
   void clockInAnotherUnit_isNamed();
   void wrongTimesOfAnImu_areRefusedWithTheUnit();
@@ -548,6 +551,39 @@ void TestSessionRecording::simulatedRawFiles_haveTheirImuBeside() {
     QCOMPARE(events, made.events);
     QCOMPARE(samples, made.imu_samples);
     QVERIFY(recording.faults().empty());
+  }
+}
+
+// Its place is not known, but it does not jump: the camera was never turned by 60 deg, nor the
+// board's middle moved by a square in the other direction than its corners' velocities.
+void TestSessionRecording::realCheckerboard_isFoundInSingleEvents() {
+  const QString folder = realRecordings();
+  if (folder.isEmpty()) QSKIP("EVICAL_DATA, the folder of sample recordings, is not set");
+  const Session session = dvs128Moving(folder);
+  const BoardObservations found = readAndDetect(session, {CameraLens{}}, RunContext{}).cameras.front();
+  QVERIFY(found.single_events);
+  double found_s = 0.0;
+  for (const WindowReport& window : found.windows)
+    if (window.time_s > 8.0 && window.time_s < 35.0 && window.outcome == WindowOutcome::Partial)
+      found_s += 2.0 * window.half_width_s;
+  qInfo("found in %.1f of 27 s", found_s);
+  QVERIFY2(found_s > 0.5 * 27.0, qPrintable(QString::number(found_s)));
+  const BoardView* before = nullptr;
+  for (const BoardView& view : found.views) {
+    if (before && view.time_s - before->time_s < 0.12) {
+      int same = 0, jumps = 0;
+      for (const CircleObservation& corner : view.circles)
+        for (const CircleObservation& last : before->circles) {
+          if (last.circle != corner.circle) continue;
+          const Eigen::Vector2d velocity = 0.5 * (last.velocity_px_s + corner.velocity_px_s),
+                                moved = corner.centre_px - last.centre_px;
+          constexpr double kSquare_px = 7.0;
+          ++same;
+          jumps += (moved - (corner.time_s - last.time_s) * velocity).norm() > kSquare_px;
+        }
+      QVERIFY2(2 * jumps <= same, qPrintable(QString::number(view.time_s)));
+    }
+    before = &view;
   }
 }
 
