@@ -130,7 +130,7 @@ class TestResultFiles : public QObject {
     // There are as many dots as lines, and the first dot at the position of the first line.
     const QStringList lines =
         readFileForResultFiles(folder_.filePath("plots/camera1_centres.csv")).trimmed().split('\n');
-    const auto begin = page_.indexOf("aria-label=\"circle centres over the image\"");
+    const auto begin = page_.indexOf("aria-label=\"points over the image\"");
     QVERIFY(begin > 0);
     const QString svg = page_.mid(begin, page_.indexOf("</svg>", begin) - begin);
     const QString dots = svg.mid(svg.indexOf("class=\"dots"));
