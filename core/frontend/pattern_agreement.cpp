@@ -238,18 +238,20 @@ PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d
 std::vector<PlacementScore> rivalPatterns(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts,
                                           const BurstWindow& window, const BoardScene& scene,
                                           double half_window_s, const TrackingOptions& options) {
-  constexpr double kBeyond = 0.5;  // of the board's size: rivals explain edges there, which it does not
+  // Around a checkerboard, rivals explain edges that it does not. Between tags, bits distinguish placements
+  // better, and are many.
+  const bool tags = scene.board.hasTags();
+  const double beyond = tags ? 0.0 : 0.5;  // of the board's size
   const EdgeMap& map = scene.edges->map;
-  const std::vector<BoardCrossing> crossings = crossingsOnBoard(laid, window, map, half_window_s, kBeyond);
+  const std::vector<BoardCrossing> crossings = crossingsOnBoard(laid, window, map, half_window_s, beyond);
   const auto on_board = static_cast<double>(
       std::count_if(crossings.begin(), crossings.end(),
                     [&](const BoardCrossing& crossing) { return map.contains(crossing.at_m); }));
   const auto points =
       static_cast<double>(std::max(expectedCircles(laid, scene, half_window_s), options.min_circle_bursts));
   const double per_point = std::max(on_board / points, 1.0);
-  // Between tags, bits distinguish placements better.
   std::optional<LatticeEdges> lattice;
-  if (!scene.board.hasTags()) lattice.emplace(laid, crossings, scene, half_window_s);
+  if (!tags) lattice.emplace(laid, crossings, scene, half_window_s);
   const std::vector<PrintedEdge>& edges = scene.edges->edges;
   LatticeEdges::Count own;
   if (lattice) own = lattice->countOf(edges, Eigen::Matrix3d::Identity());
