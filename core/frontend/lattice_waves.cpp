@@ -22,7 +22,6 @@ constexpr std::size_t kMaxEvents = 6000;  // of a window; more take longer
 constexpr std::size_t kMaxPeaks = 8, kMaxLattices = 2;
 constexpr double kMinSine = 0.7, kMaxRatio = 1.7;  // of the two waves' directions and lengths
 
-// An event, or several at one pixel and time, of a picture with larger pixels.
 struct SignedEvent {
   Eigen::Vector2d at_px;
   double time_s, sign;

@@ -238,8 +238,7 @@ PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d
 std::vector<PlacementScore> rivalPatterns(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts,
                                           const BurstWindow& window, const BoardScene& scene,
                                           double half_window_s, const TrackingOptions& options) {
-  // Around a checkerboard, rivals explain edges that it does not. Between tags, bits distinguish placements
-  // better, and are many.
+  // Around a checkerboard, rivals explain edges that it does not. Bits distinguish placements of tags better.
   const bool tags = scene.board.hasTags();
   const double beyond = tags ? 0.0 : 0.5;  // of the board's size
   const EdgeMap& map = scene.edges->map;
