@@ -46,8 +46,11 @@ class EdgeMap {
 
   explicit EdgeMap(const std::vector<PrintedEdge>& edges);
 
-  // Within the map, or `beyond` its own size around it.
-  bool contains(const Eigen::Vector2d& at_m, double beyond = 0.0) const {
+  bool contains(const Eigen::Vector2d& at_m) const {
+    return (at_m.array() >= low_m_.array()).all() && (at_m.array() < high_m_.array()).all();
+  }
+  // The same for a larger map, by the share `beyond` of its size on each side.
+  bool isAround(const Eigen::Vector2d& at_m, double beyond) const {
     const Eigen::Array2d margin_m = beyond * (high_m_ - low_m_).array();
     return (at_m.array() >= low_m_.array() - margin_m).all() &&
            (at_m.array() < high_m_.array() + margin_m).all();

@@ -155,8 +155,7 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
   }
 }
 
-// As long as a board is hardly found, a search tries single events, too, if there are many more of them than
-// bursts.
+// A search tries single events, too, while the board is hardly found and they are many more than bursts.
 BoardSearch BoardTracker::searchWindow(std::int64_t middle_ns) {
   constexpr std::int64_t kAround_ns = 50'000'000;
   constexpr std::size_t kManyMore = 3;
@@ -204,7 +203,7 @@ void BoardTracker::acquire(const WindowSlot& slot, const BoardMotion& motion, bo
   trace.report.tracked = false;
   motion_ = trace.motion;
   endTrack();
-  placement_watch_.begin(distinguished);
+  placement_watch_.begin(scene_.edges ? std::optional(distinguished) : std::nullopt);
   trackBackwards(slot, *trace.motion);
   tracked_until_ns_ = slot.end_ns;
   keep(trace);

@@ -101,7 +101,7 @@ void keepSupported(Resolution resolution_px, int min_support, std::vector<EdgeCr
 
 BurstWindow::BurstWindow(const BoardScene& scene)
     : resolution_px_(scene.resolution_px),
-      single_events_(scene.single_events),
+      drops_single_events_(!scene.single_events && burstsFor(scene.board, BurstOptions()).single_events),
       pixels_(scene.pixels),
       dark_circles_(scene.board.circles == CircleShade::Dark),
       columns_((scene.resolution_px.width_px >> kCellShift) + 1),
@@ -149,7 +149,8 @@ void BurstWindow::gather(const BurstHistory& history, std::int64_t middle_ns, do
   const std::int64_t half_ns = nanosecondsFrom(half_window_s);
   gathered_.clear();
   history.gather(middle_ns - half_ns, middle_ns + half_ns, gathered_);
-  if (!single_events_) std::erase_if(gathered_, [](const EdgeCrossing& burst) { return burst.events == 0; });
+  if (drops_single_events_)
+    std::erase_if(gathered_, [](const EdgeCrossing& burst) { return burst.events == 0; });
 }
 
 void BurstWindow::fill(const BurstHistory& history, std::int64_t middle_ns, double half_window_s) {

@@ -87,7 +87,7 @@ class BurstWindow {
   void gather(const BurstHistory& history, std::int64_t middle_ns, double half_window_s);
 
   Resolution resolution_px_;
-  bool single_events_;
+  bool drops_single_events_;
   std::shared_ptr<const IdealPixels> pixels_;
   bool dark_circles_;
   int columns_, rows_;

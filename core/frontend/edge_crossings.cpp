@@ -145,14 +145,15 @@ std::int64_t BurstExtractor::Burst::timeOf_ns(double kept_event) const {
 void BurstExtractor::end(std::uint32_t index, std::int64_t now_ns, std::vector<EdgeCrossing>& bursts) {
   Pixel& pixel = pixels_[index];
   const Burst burst{pixel, times_ns_[index]};
-  const auto width = static_cast<std::uint32_t>(resolution_px_.width_px);
-  const auto x_px = static_cast<std::uint16_t>(index % width),
-             y_px = static_cast<std::uint16_t>(index / width);
+  const auto handOut = [&](std::int64_t time_ns, int events) {
+    const auto width = static_cast<std::uint32_t>(resolution_px_.width_px);
+    bursts.push_back({time_ns, pixel.length_ns, static_cast<std::uint16_t>(index % width),
+                      static_cast<std::uint16_t>(index / width), static_cast<std::uint16_t>(events),
+                      pixel.brighter});
+  };
   if (pixel.events < min_events_) {
     if (!pausedAt(pixel, now_ns)) pixel.level.step(pixel.brighter, pixel.events);
-    if (single_events_)
-      bursts.push_back(
-          {burst.timeOf_ns(0.5 * (pixel.kept - 1)), pixel.length_ns, x_px, y_px, 0, pixel.brighter});
+    if (single_events_) handOut(burst.timeOf_ns(0.5 * (pixel.kept - 1)), 0);
     return;
   }
   const int first = ownBegin(burst), stride = 1 << pixel.stride_log2;
@@ -165,8 +166,7 @@ void BurstExtractor::end(std::uint32_t index, std::int64_t now_ns, std::vector<E
        isRest(begin_ns - before_ns, median_ns - begin_ns), isRest(now_ns - last_ns, last_ns - median_ns)});
   pixel.quiet_since_ns = last_ns;
   if (!middle) return;
-  bursts.push_back({burst.timeOf_ns(first + middle->event / stride), pixel.length_ns, x_px, y_px,
-                    static_cast<std::uint16_t>(middle->whole_events), pixel.brighter});
+  handOut(burst.timeOf_ns(first + middle->event / stride), middle->whole_events);
 }
 
 bool BurstExtractor::pausedAt(const Pixel& pixel, std::int64_t time_ns) const {

@@ -39,7 +39,7 @@ std::vector<BoardCrossing> crossingsOnBoard(const BoardMotion& motion, const Bur
     const Eigen::Vector2d at_middle = pixel - motion.travel(pixel, time_s);
     const Eigen::Vector3d on_board = board_from_ideal * at_middle.homogeneous();
     const Eigen::Vector2d at_m = on_board.hnormalized();
-    if (!map.contains(at_m, beyond)) continue;
+    if (!map.isAround(at_m, beyond)) continue;
     const Eigen::Matrix2d m_per_px =
         (board_from_ideal.topLeftCorner<2, 2>() - at_m * board_from_ideal.block<1, 2>(2, 0)) / on_board.z();
     // Cosine between the motion and the normals of edges, which are the rows of the inverse map.
@@ -197,8 +197,8 @@ class LatticeEdges {
   std::vector<Edge> edges_;
 };
 
-// How much an edge without events speaks against a placement, compared with how much one with events speaks
-// for it: the ratio of the logarithms of their probabilities on and off the board.
+// Weight of an edge without events against a placement, relative to that of one with events for it: the ratio
+// of the logarithms of their probabilities on and off the board.
 double weightOfAbsence(const LatticeEdges::Count& laid) {
   const double expected = std::max(laid.expected, 1);
   const double on_board = std::clamp(laid.seen / expected, 0.3, 0.97),

@@ -135,7 +135,7 @@ std::vector<Eigen::Matrix3d> rivalShifts(const BoardScene& scene, double min_ove
 PlacementWatch::PlacementWatch(const BoardScene& scene, const GridOptions& options)
     : options_(options), shifts_(rivalShifts(scene, options.min_rival_overlap)) {}
 
-void PlacementWatch::begin(bool distinguished) {
+void PlacementWatch::begin(std::optional<bool> distinguished) {
   contradicting_ = agreeing_ = wait_ = 0;
   distinguished_ = distinguished;
   sums_.clear();
@@ -179,8 +179,8 @@ std::optional<Eigen::Matrix3d> PlacementWatch::look(const BurstWindow& window, c
     return std::all_of(rivals.begin(), rivals.end(),
                        [&](const PlacementScore& rival) { return isLaid(rival) || behind(rival); });
   };
-  distinguished_ =
-      distinguished_ || all([&](const PlacementScore& rival) { return laid.excludes(rival, margin); });
+  distinguished_ = distinguished_.value_or(false) ||
+                   all([&](const PlacementScore& rival) { return laid.excludes(rival, margin); });
   // Covered or resting circles are missing without being elsewhere: only visible circles are conclusive.
   const bool surely =
       all([&](const PlacementScore& rival) { return rival.measured + margin < laid.measured; });
@@ -227,7 +227,7 @@ std::optional<Eigen::Matrix3d> PlacementWatch::contradicted(const Eigen::Matrix3
 void PlacementWatch::agreed(int in_a_row) {
   contradicting_ = 0;
   agreeing_ = in_a_row;
-  distinguished_ = distinguished_ || isSettled();
+  distinguished_ = distinguished_.value_or(false) || isSettled();
   wait_ = isSettled() ? options_.look_every_windows : 1;
 }
 

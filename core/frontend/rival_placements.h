@@ -55,8 +55,9 @@ class PlacementWatch {
  public:
   PlacementWatch(const BoardScene& scene, const GridOptions& options);
 
-  // After a new detection of the board: all placements are open, unless its search distinguished them.
-  void begin(bool distinguished);
+  // After a new detection of the board: all placements are open. `distinguished`: by the search; empty if
+  // only checks count, once there are any.
+  void begin(std::optional<bool> distinguished);
   bool isDue() const { return wait_ <= 1; }
   void skip() { --wait_; }  // a window without a check
 
@@ -71,9 +72,9 @@ class PlacementWatch {
 
   // The visible circles of the last checks exclude all other placements.
   bool isSettled() const { return agreeing_ >= options_.contradicting_looks; }
-  // False if neither the search nor a check since the last contradiction ranked the board ahead of all
-  // rivals.
-  bool isDistinguished() const { return distinguished_; }
+  // False if no check since begin(), or since the last contradiction, ranked the board ahead of all rivals.
+  // True without checks.
+  bool isDistinguished() const { return distinguished_.value_or(true); }
 
  private:
   std::optional<Eigen::Matrix3d> contradicted(const Eigen::Matrix3d& shift);
@@ -87,7 +88,7 @@ class PlacementWatch {
   Eigen::Matrix3d favourite_ = Eigen::Matrix3d::Identity();
   int contradicting_ = 0, agreeing_ = 0;  // consecutive checks; a check agrees if it leaves no rival open
   int wait_ = 0;                          // windows until the next check
-  bool distinguished_ = false;
+  std::optional<bool> distinguished_;     // empty: no check yet
   // Squares: sums over windows, by shift, and of the squares of the windows' weights.
   std::vector<PlacementScore> sums_;
   double squared_weights_ = 0.0;
