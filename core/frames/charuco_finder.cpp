@@ -2,7 +2,7 @@
 #include "core/frames/corner_measurement.h"
 #include "core/frames/picture_view.h"
 #include "core/frames/plane_map.h"
-#include "core/frames/tag_layout.h"
+#include "core/geometry/tag_layout.h"
 #include "core/geometry/marker_bits.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "core/frames/tag_layout.h"
+#include "core/geometry/tag_layout.h"
 
 #include "core/geometry/homography.h"
 
@@ -14,7 +14,7 @@ Eigen::Vector2d middleOf(const TagCorners& corners) {
 }
 
 // Indices of the nearest other tags in the picture.
-std::vector<std::size_t> neighboursOf(std::size_t tag, const std::vector<Eigen::Vector2d>& middles_px) {
+std::vector<std::size_t> nearestTags(std::size_t tag, const std::vector<Eigen::Vector2d>& middles_px) {
   constexpr std::size_t kMax = 8;  // fewer would be in one row if the board is seen from the side
   std::vector<std::size_t> others;
   for (std::size_t k = 0; k < middles_px.size(); ++k)
@@ -75,7 +75,7 @@ double agreementOfNeighbours(const std::vector<SeenTag>& tags, const std::vector
     const auto picture_from_board = fitHomography({places_m[k].begin(), places_m[k].end()},
                                                   {tags[k].corners_px.begin(), tags[k].corners_px.end()});
     if (!picture_from_board) continue;
-    for (const std::size_t other : neighboursOf(k, middles_px)) {
+    for (const std::size_t other : nearestTags(k, middles_px)) {
       const double distance_px = (middles_px[other] - middles_px[k]).norm();
       ++pairs;
       if (meanDistance(*picture_from_board, places_m[other], tags[other].corners_px) <
