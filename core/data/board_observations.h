@@ -83,6 +83,7 @@ struct WindowReport {
 struct LatticeEnds {
   int beyond_in_view = 0, beyond_seen = 0;  // circles beyond the board: it is larger
   int edge_in_view = 0, edge_missing = 0;   // missing circles on the board: it is smaller
+  int lines = 0, lines_lead = 0;  // number of lines in most views that show both ends, by so many views more
 };
 struct BoardExtent {
   LatticeEnds rows, cols;

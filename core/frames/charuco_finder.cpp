@@ -2,8 +2,8 @@
 #include "core/frames/corner_measurement.h"
 #include "core/frames/picture_view.h"
 #include "core/frames/plane_map.h"
-#include "core/geometry/tag_layout.h"
 #include "core/geometry/marker_bits.h"
+#include "core/geometry/tag_layout.h"
 
 #include <fmt/format.h>
 #include <opencv2/aruco.hpp>
@@ -103,11 +103,7 @@ class CharucoFinder : public PatternFinder {
                        nameOf(best_family_), board_.rows, board_.cols);
   }
 
-  std::string remark() const override {
-    if (quarter_turns_ == 0) return {};
-    return "compared with OpenCV's boards, the markers are " +
-           rotationText(kTagCornerCount - quarter_turns_) + "; this is accounted for";
-  }
+  std::string remark() const override { return markerRemark(kTagCornerCount - quarter_turns_); }
 
  private:
   Reading bestReading(const cv::Mat& picture) {

@@ -115,22 +115,13 @@ class TagGridFinder : public PatternFinder {
   bool renumbered() override { return std::exchange(renumbered_, false); }
 
   std::string doubt() const override {
-    const int tags = tagCount();
     constexpr int kEnoughPictures = 3;
     if (mirrored_ >= kEnoughPictures && largest_id_ < 0)
       return "the tags can only be read in the mirror image: the camera's pictures or the printed board are "
              "mirrored";
-    const int span = largest_id_ - smallest_id_ + 1, first = board_.first_tag, end = first + tags;
-    const bool others = largest_id_ >= end || (largest_id_ >= 0 && smallest_id_ < first);
-    if (smallest_id_ != first && others && (smallest_id_ >= end || largest_id_ < first || span == tags))
-      return fmt::format(
-          "tags {} to {} were detected, but a board of {} x {} tags from {} on has tags up to {}: this is "
-          "another board, or first_tag should be {}",
-          smallest_id_, largest_id_, board_.rows, board_.cols, first, end - 1, smallest_id_);
-    if (others)
-      return fmt::format(
-          "tag {} was detected, but a board of {} x {} tags has tags {} to {}: check rows and columns",
-          largest_id_ >= end ? largest_id_ : smallest_id_, board_.rows, board_.cols, first, end - 1);
+    if (largest_id_ >= 0)
+      if (const std::string others = otherTagsText(board_, smallest_id_, largest_id_); !others.empty())
+        return others;
     if (misfits_ >= kEnoughPictures && misfits_ > fits_)
       return fmt::format("the detected tags do not fit a board of {} x {} tags: check rows and columns",
                          board_.rows, board_.cols);
@@ -143,12 +134,7 @@ class TagGridFinder : public PatternFinder {
     return {};
   }
 
-  std::string remark() const override {
-    const std::string layout = layoutText(layout_);
-    return layout.empty()
-               ? layout
-               : "compared with Kalibr's boards, the tags are " + layout + "; this is accounted for";
-  }
+  std::string remark() const override { return layoutRemark(layout_); }
 
  private:
   std::vector<SeenTag> readTags(const GrayImage& image) {

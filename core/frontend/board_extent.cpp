@@ -9,8 +9,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace evical {
+
+void countWhole(int lines, LatticeEnds& ends) {
+  if (ends.lines_lead == 0) ends.lines = lines;
+  ends.lines_lead += lines == ends.lines ? 1 : -1;
+}
+
 namespace {
 
 // A row or a column of circles, on the board or beyond it, as a separate board.
@@ -62,16 +69,41 @@ Deviation deviationOf(const CircleObservation& circle, const OutlineImage& place
           circle.semi_axes_px.maxCoeff() - 1.0 / std::sqrt(shape.eigenvalues().x())};
 }
 
-void countEnds(std::array<LineState, 2> beyond, std::array<LineState, 2> edges, LatticeEnds& ends) {
-  const auto any = [](const std::array<LineState, 2>& lines, LineState state) {
-    return lines[0] == state || lines[1] == state;
+// Evidence of one window: the states of all lines, those `beyond` the board on either side included.
+void countLines(const std::vector<LineState>& lines, std::size_t beyond, LatticeEnds& ends) {
+  const auto begin = lines.begin() + static_cast<std::ptrdiff_t>(beyond),
+             end = lines.end() - (begin - lines.begin());
+  const auto inView = [](LineState state) { return state != LineState::OutOfView; };
+  const auto first = std::find_if(begin, end, inView);
+  const auto last = std::find_if(std::reverse_iterator(end), std::reverse_iterator(begin), inView);
+  const std::array outside = {*(begin - 1), *end};
+  const std::array edges = {first == end ? LineState::OutOfView : *first,
+                            first == end ? LineState::OutOfView : *last};
+  const auto any = [](const std::array<LineState, 2>& of, LineState state) {
+    return of[0] == state || of[1] == state;
   };
-  const bool larger = any(beyond, LineState::Present), smaller = any(edges, LineState::Absent);
+  const bool larger = any(outside, LineState::Present), smaller = any(edges, LineState::Absent);
   if (larger && smaller) return;
-  ends.beyond_in_view += larger || any(beyond, LineState::Absent) || any(beyond, LineState::Unclear);
+  ends.beyond_in_view += larger || any(outside, LineState::Absent) || any(outside, LineState::Unclear);
   ends.beyond_seen += larger;
   ends.edge_in_view += smaller || any(edges, LineState::Present) || any(edges, LineState::Unclear);
   ends.edge_missing += smaller;
+}
+
+// Number of lines that are present between absent ones; 0 if their ends are not in view.
+int wholeLines(const std::vector<LineState>& lines) {
+  const auto isPresent = [](LineState state) { return state == LineState::Present; };
+  const auto first = std::find_if(lines.begin(), lines.end(), isPresent);
+  const auto end = std::find_if(lines.rbegin(), lines.rend(), isPresent).base();
+  if (first == lines.begin() || first == lines.end() || end == lines.end()) return 0;
+  const bool is_whole = *(first - 1) == LineState::Absent && *end == LineState::Absent &&
+                        std::find(first, end, LineState::Absent) == end;
+  return is_whole ? static_cast<int>(end - first) : 0;
+}
+
+void judgeLines(const std::vector<LineState>& lines, std::size_t beyond, LatticeEnds& ends) {
+  countLines(lines, beyond, ends);
+  if (const int whole = wholeLines(lines); whole > 0) countWhole(whole, ends);
 }
 
 class ExtentJudge {
@@ -105,15 +137,12 @@ class ExtentJudge {
     centre_sigma_px_ = std::max(centre_sigma_px_, std::sqrt(centres_px2 / count));
   }
 
-  void judgeRows(LatticeEnds& ends) const {
-    const int rows = scene_.board.rows;
-    countEnds({beyond(rowOf(scene_, -1)), beyond(rowOf(scene_, rows))},
-              {firstInView(0, 1, rows, true), firstInView(rows - 1, -1, rows, true)}, ends);
-  }
-  void judgeColumns(LatticeEnds& ends) const {
-    const int cols = scene_.board.cols;
-    countEnds({beyond(columnBeyond(scene_, true)), beyond(columnBeyond(scene_, false))},
-              {firstInView(0, 1, cols, false), firstInView(cols - 1, -1, cols, false)}, ends);
+  void judge(bool of_rows, LatticeEnds& ends) const {
+    const int count = of_rows ? scene_.board.rows : scene_.board.cols;
+    std::vector<LineState> lines = {beyond(of_rows ? rowOf(scene_, -1) : columnBeyond(scene_, true))};
+    for (int k = 0; k < count; ++k) lines.push_back(stateOfOwn(k, of_rows));
+    lines.push_back(beyond(of_rows ? rowOf(scene_, count) : columnBeyond(scene_, false)));
+    judgeLines(lines, 1, ends);
   }
 
  private:
@@ -173,18 +202,11 @@ class ExtentJudge {
                    std::min(extent.min_circles_beyond, line.scene.board.pointCount()));
   }
 
-  // First line of the board in the image, from an edge inwards.
-  LineState firstInView(int from, int step, int lines, bool rows) const {
-    for (int k = from; k >= 0 && k < lines; k += step) {
-      const auto seen =
-          std::count_if(trace_.circles.begin(), trace_.circles.end(), [&](const CircleObservation& circle) {
-            return (rows ? circle.circle / scene_.board.cols : circle.circle % scene_.board.cols) == k;
-          });
-      const Line line = rows ? rowOf(scene_, k) : columnOf(scene_, k);
-      const LineState state = stateOf(line, static_cast<int>(seen));
-      if (state != LineState::OutOfView) return state;
-    }
-    return LineState::OutOfView;
+  LineState stateOfOwn(int k, bool rows) const {
+    const auto seen = std::count_if(
+        trace_.circles.begin(), trace_.circles.end(),
+        [&](const CircleObservation& circle) { return scene_.board.lineOf(circle.circle, rows) == k; });
+    return stateOf(rows ? rowOf(scene_, k) : columnOf(scene_, k), static_cast<int>(seen));
   }
 
   const BurstWindow& window_;
@@ -202,18 +224,23 @@ class CornerExtentJudge {
   CornerExtentJudge(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
                     const FrontEndOptions& options)
       : larger_(scene), options_(options) {
-    larger_.board.rows += 2;
-    larger_.board.cols += 2;
+    larger_.board.rows += 2 * kBeyond;
+    larger_.board.cols += 2 * kBeyond;
     larger_.edges = edgesOf(larger_.board, {.blank = true});
     Eigen::Matrix3d origin = Eigen::Matrix3d::Identity();
-    origin.topRightCorner<2, 1>().setConstant(-scene.board.spacing_m);
+    origin.topRightCorner<2, 1>().setConstant(-kBeyond * scene.board.spacing_m);
     const BoardMotion motion = shifted(*trace.motion, origin);
     const double half_s = trace.report.half_width_s;
     for (const bool of_rows : {true, false})
       lines_[of_rows].resize(static_cast<std::size_t>(larger_.board.lineCount(of_rows)));
+    // Lines are as long as the board's own ones.
+    const auto isOwn = [&](int line, bool of_rows) {
+      return line >= kBeyond && line < larger_.board.lineCount(of_rows) - kBeyond;
+    };
     const auto count = [&](int corner, int Counts::*what) {
       for (const bool of_rows : {true, false})
-        ++(lines_[of_rows][static_cast<std::size_t>(larger_.board.lineOf(corner, of_rows))].*what);
+        if (isOwn(larger_.board.lineOf(corner, !of_rows), !of_rows))
+          ++(lines_[of_rows][static_cast<std::size_t>(larger_.board.lineOf(corner, of_rows))].*what);
     };
     for (const CircleObservation& corner :
          measureCircles(window, motion, larger_, {half_s}, options.tracking))
@@ -222,38 +249,33 @@ class CornerExtentJudge {
   }
 
   void judge(bool of_rows, LatticeEnds& ends) const {
-    const std::vector<Counts>& lines = lines_[of_rows];
-    const std::size_t last = lines.size() - 1;
-    countEnds({stateOf(lines.front(), of_rows), stateOf(lines[last], of_rows)},
-              {firstInView(1, last, of_rows), firstInView(last - 1, 0, of_rows)}, ends);
+    std::vector<LineState> lines;
+    for (const Counts& line : lines_[of_rows]) lines.push_back(stateOf(line, of_rows));
+    judgeLines(lines, kBeyond, ends);
   }
 
  private:
+  static constexpr int kBeyond = 4;  // lines on each side
+
   struct Counts {
     int expected = 0, seen = 0;
   };
 
   LineState stateOf(const Counts& line, bool of_rows) const {
-    const auto in_line =
-        static_cast<double>(larger_.board.pointCount()) / static_cast<double>(lines_[of_rows].size());
+    const int own = larger_.board.lineCount(!of_rows) - 2 * kBeyond, all = larger_.board.lineCount(!of_rows);
+    const double in_line = static_cast<double>(larger_.board.pointCount()) /
+                           static_cast<double>(lines_[of_rows].size()) * own / all;
     const double least =
         std::max<double>(options_.extent.min_circles_beyond, options_.extent.min_line * in_line);
-    if (line.expected < least) return LineState::OutOfView;
-    const double share = static_cast<double>(line.seen) / line.expected;
+    const int in_view = std::max(line.expected, line.seen);
+    if (in_view < least) return LineState::OutOfView;
+    const double share = static_cast<double>(line.seen) / in_view;
     if (share >= options_.extent.min_line) return LineState::Present;
     return share <= (1.0 - options_.extent.min_line) * 0.5 ? LineState::Absent : LineState::Unclear;
   }
-  // First line in view from one end of the board inwards, up to the line before `end`.
-  LineState firstInView(std::size_t from, std::size_t end, bool of_rows) const {
-    for (std::size_t k = from; k != end; from < end ? ++k : --k)
-      if (const LineState state = stateOf(lines_[of_rows][k], of_rows); state != LineState::OutOfView)
-        return state;
-    return LineState::OutOfView;
-  }
-
   BoardScene larger_;
   const FrontEndOptions& options_;
-  std::array<std::vector<Counts>, 2> lines_;  // of columns and of rows, the board's own ones from 1 on
+  std::array<std::vector<Counts>, 2> lines_;  // of columns and of rows, the board's own ones from kBeyond on
 };
 
 }  // namespace
@@ -267,8 +289,8 @@ void judgeExtent(const BurstWindow& window, const WindowTrace& trace, const Boar
     return;
   }
   const ExtentJudge judge(window, trace, scene, options);
-  judge.judgeRows(extent.rows);
-  judge.judgeColumns(extent.cols);
+  judge.judge(true, extent.rows);
+  judge.judge(false, extent.cols);
 }
 
 }  // namespace evical

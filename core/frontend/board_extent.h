@@ -12,4 +12,7 @@ namespace evical {
 void judgeExtent(const BurstWindow& window, const WindowTrace& trace, const BoardScene& scene,
                  const FrontEndOptions& options, BoardExtent& extent);
 
+// Counts a view that shows both ends of the lattice, with so many lines between them.
+void countWhole(int lines, LatticeEnds& ends);
+
 }  // namespace evical

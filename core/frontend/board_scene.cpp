@@ -89,7 +89,7 @@ void EdgeMap::draw(const PrintedEdge& edge) {
 }
 
 BoardEdges::BoardEdges(const Board& board, const TagPrint& print)
-    : pattern(board, print), edges(pattern.edges()), map(edges) {
+    : pattern(board, print), edges(pattern.edges()), map(edges), print(print) {
   constexpr double kSamePlace = 1e-3;  // of the spacing
   for (const Eigen::Vector2d& corner_m : boardPoints_m(board)) {
     std::array<PrintedEdge, 4>& own = arms.emplace_back();
@@ -101,25 +101,14 @@ BoardEdges::BoardEdges(const Board& board, const TagPrint& print)
   }
 }
 
-std::vector<TagPrint> possiblePrints(const Board& board) {
-  std::vector<TagPrint> prints;
-  switch (board.type) {
-    case BoardType::AprilGrid:
-      for (const int border_bits : {2, 1})
-        for (int quarter_turns = 0; quarter_turns < 4; ++quarter_turns)
-          prints.push_back({.border_bits = border_bits, .quarter_turns = quarter_turns});
-      return prints;
-    case BoardType::Charuco:
-      prints.push_back({});
-      for (const bool first_is_bright : {false, true})
-        for (const std::string& markers : markerNames())
-          if (board.rows * board.cols / 2 <= markerCount(markers) &&
-              (first_is_bright || markers != kUsualMarkers))
-            prints.push_back({.markers = markers, .first_is_bright = first_is_bright});
-      return prints;
-    default:
-      return {TagPrint{}};
-  }
+std::vector<TagPrint> markerPrints(const Board& board) {
+  std::vector<TagPrint> prints = {TagPrint{}};
+  for (const bool first_is_bright : {false, true})
+    for (const std::string& markers : markerNames())
+      if (board.rows * board.cols / 2 <= markerCount(markers) &&
+          (first_is_bright || markers != kUsualMarkers))
+        prints.push_back({.markers = markers, .first_is_bright = first_is_bright});
+  return prints;
 }
 
 std::shared_ptr<const BoardEdges> edgesOf(const Board& board, const TagPrint& print) {

@@ -84,11 +84,12 @@ struct BoardEdges {
   // its length.
   std::vector<std::array<PrintedEdge, 4>> arms;
   EdgeMap map;
+  TagPrint print;
 
   BoardEdges(const Board& board, const TagPrint& print);
 };
-// Prints of a board's tags that are possible, the most usual first; one for other boards.
-std::vector<TagPrint> possiblePrints(const Board& board);
+// Prints of a ChArUco board that are possible, the most usual first.
+std::vector<TagPrint> markerPrints(const Board& board);
 
 // The same for several scenes: the tables of the last boards are kept.
 std::shared_ptr<const BoardEdges> edgesOf(const Board& board, const TagPrint& print);

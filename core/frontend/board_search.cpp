@@ -1,5 +1,6 @@
 #include "core/frontend/board_search.h"
 
+#include "core/frontend/board_extent.h"
 #include "core/frontend/circle_measurement.h"
 #include "core/frontend/lattice_waves.h"
 #include "core/frontend/pattern_agreement.h"
@@ -157,6 +158,16 @@ bool showsBoard(const Judged& best, const PlacementScore& agreement, const Board
   return best.missing <= options.max_missing * best.measured;
 }
 
+BoardExtent extentAt(const BoardMotion& motion, const BurstWindow& window, const BoardScene& scene,
+                     double half_window_s, const FrontEndOptions& options) {
+  WindowTrace trace;
+  trace.motion = motion;
+  trace.report.half_width_s = half_window_s;
+  BoardExtent extent;
+  judgeExtent(window, trace, scene, options, extent);
+  return extent;
+}
+
 WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& given,
                               const FrontEndOptions& options, BoardSearch& search) {
   BoardScene scene = given;  // with the print that is found
@@ -169,7 +180,11 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& given
     const std::vector<Eigen::Matrix3d> shifts = rivalShifts(scene, options.grid.min_rival_overlap);
     if (scene.edges && scene.board.hasTags()) {
       const PrintMatch match = matchPrint(best->motion, shifts, window, scene, half_s);
-      if (!match.matches) return WindowOutcome::OtherPattern;
+      search.numbers = match.numbers;
+      if (!match.matches) {
+        search.extent = extentAt(best->motion, window, scene, half_s, options);
+        return WindowOutcome::OtherPattern;
+      }
       search.edges = match.edges;
       best->motion = shifted(best->motion, match.shift);
       scene.edges = match.edges;
@@ -186,7 +201,10 @@ WindowOutcome choosePlacement(const BurstWindow& window, const BoardScene& given
     search.distinguished = !undecided || !scene.edges;  // squares: later windows may decide
   }
   if (!showsBoard(*best, first, scene, options.grid)) {
-    if (scene.edges) search.narrowest_px = narrowestInk_px(best->motion.ideal_from_board, scene);
+    if (scene.edges) {
+      search.narrowest_px = narrowestInk_px(best->motion.ideal_from_board, scene);
+      search.extent = extentAt(best->motion, window, scene, half_s, options);
+    }
     return scene.edges && search.narrowest_px < kMinInk_px ? WindowOutcome::TooSmall
                                                            : WindowOutcome::TooFewInGrid;
   }

@@ -12,6 +12,7 @@
 #include "core/frontend/detection_options.h"
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace evical {
@@ -33,9 +34,11 @@ struct BoardSearch {
   CornerLattice corners;                 // and instead of their lattice
   std::vector<BoardPlacement> placements;
   std::optional<BoardMotion> motion;
-  bool distinguished = true;                // false: another placement of squares explains about as much
-  double narrowest_px = 0.0;                // of an outcome TooSmall: narrowestInk_px
-  std::shared_ptr<const BoardEdges> edges;  // of the print that was found, of a board of squares
+  bool distinguished = true;                   // false: another placement of squares explains about as much
+  BoardExtent extent;                          // of squares, of an outcome TooFewInGrid or OtherPattern
+  double narrowest_px = 0.0;                   // of an outcome TooSmall: narrowestInk_px
+  std::optional<std::pair<int, int>> numbers;  // of an outcome OtherPattern: the first and last tag seen
+  std::shared_ptr<const BoardEdges> edges;     // of the print that was found, of a board of squares
 };
 
 // One search for each source of candidates that was tried, in order: the options' method first, and the other

@@ -76,6 +76,18 @@ BoardObservations BoardTracker::finish() {
   return std::move(observations_);
 }
 
+std::string BoardTracker::doubt() const {
+  return numbers_ ? otherTagsText(scene_.board, numbers_->first, numbers_->second) : std::string();
+}
+
+std::string BoardTracker::remark() const {
+  if (!scene_.edges || !scene_.board.hasTags()) return {};
+  const TagPrint& print = scene_.edges->print;
+  const int counterclockwise = (kTagCornerCount - print.quarter_turns) % kTagCornerCount;
+  return scene_.board.type == BoardType::AprilGrid ? layoutRemark({print.order, counterclockwise})
+                                                   : markerRemark(counterclockwise);
+}
+
 std::int64_t BoardTracker::slotLength_ns(const BoardMotion* motion) const {
   const DetectionOptions& d = options_.detection;
   if (!motion) return nanosecondsFrom(0.5 * (d.min_window_s + d.max_window_s));
@@ -136,13 +148,21 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
   if (observer_) observer_->windowSearched(search, middle_ns);
   if (search.outcome == WindowOutcome::TooSmall)
     observations_.narrowest_px = std::max(observations_.narrowest_px, search.narrowest_px);
+  if (search.extent.rows.lines > 0) countWhole(search.extent.rows.lines, observations_.extent.rows);
+  if (search.extent.cols.lines > 0) countWhole(search.extent.cols.lines, observations_.extent.cols);
   // Trying all prints takes long. A few windows show whether one of them is the board's.
   constexpr int kMaxOtherPatterns = 8;
-  if (search.outcome == WindowOutcome::OtherPattern && ++other_patterns_ >= kMaxOtherPatterns)
-    scene_.print_known = true;
+  if (search.outcome == WindowOutcome::OtherPattern) {
+    if (++other_patterns_ >= kMaxOtherPatterns) scene_.print_known = true;
+    if (search.numbers) {
+      const auto [first, last] = numbers_.value_or(*search.numbers);
+      numbers_ = {std::min(first, search.numbers->first), std::max(last, search.numbers->second)};
+    }
+  }
   if (search.motion) {
     search_interval_s_ = options_.detection.search_interval_s;
     scene_.print_known = true;
+    numbers_.reset();
     if (search.edges && search.edges != scene_.edges) {
       scene_.edges = search.edges;
       placement_watch_ = PlacementWatch(scene_, options_.grid);

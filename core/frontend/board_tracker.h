@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,11 @@ class BoardTracker {
   void addBursts(const std::vector<EdgeCrossing>& bursts, std::int64_t first_event_ns,
                  std::int64_t complete_until_ns);
   BoardObservations finish();
+
+  // Why the board may be another one than stated, and what of its print is unusual; empty if nothing is
+  // known.
+  std::string doubt() const;
+  std::string remark() const;
 
   void stopWith(std::stop_token stop) { stop_ = std::move(stop); }        // skips the remaining windows
   void observeWith(FrontEndObserver* observer) { observer_ = observer; }  // not owned; may be null
@@ -77,7 +83,8 @@ class BoardTracker {
   std::stop_token stop_;
   FrontEndObserver* observer_ = nullptr;
   bool started_ = false;
-  int other_patterns_ = 0;  // searches that found corners, but other tags between them
+  int other_patterns_ = 0;                      // searches that found corners, but other tags between them
+  std::optional<std::pair<int, int>> numbers_;  // the first and the last one of those tags
   int held_windows_ = 0;
   PlacementWatch placement_watch_;
   PolarityDelayFit polarity_delay_;

@@ -1,5 +1,7 @@
 #include "core/frontend/pattern_agreement.h"
 
+#include "core/frontend/tag_reading.h"
+
 #include "core/geometry/camera_model.h"
 
 #include <Eigen/Geometry>
@@ -17,14 +19,6 @@ namespace {
 
 constexpr double kTolerance_px = 1.2;  // of a crossing's distance from its edge
 constexpr double kMinCosine = 0.5;     // between the motion and the normal of an edge that fires
-
-// A crossing on the board: its place, and the directions of the paper that its polarity allows, as
-// counted in EdgeMap; -1: the motion is along such edges.
-struct BoardCrossing {
-  Eigen::Vector2d at_m;
-  double tolerance_m;
-  int along_x, along_y;
-};
 
 std::vector<BoardCrossing> crossingsOnBoard(const BoardMotion& motion, const BurstWindow& window,
                                             const EdgeMap& map, double half_window_s, double beyond) {
@@ -71,6 +65,8 @@ std::array<int, 4> turnedDirections(const Eigen::Matrix2d& rival_from_laid) {
 
 struct Agreement {
   int explained = 0, contradicted = 0;
+
+  int value() const { return explained - contradicted; }
 };
 
 Agreement agreementOf(const std::vector<BoardCrossing>& crossings, const Eigen::Matrix3d& shift,
@@ -220,9 +216,8 @@ PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d
   const auto consider = [&](const std::shared_ptr<const BoardEdges>& edges) {
     for (const Eigen::Matrix3d& shift : shifts) {
       const Agreement agreement = agreementOf(crossings, shift, edges->map);
-      const int value = agreement.explained - agreement.contradicted;
-      if (value <= best_value) continue;
-      best_value = value;
+      if (agreement.value() <= best_value) continue;
+      best_value = agreement.value();
       best = {
           edges, shift,
           agreement.contradicted <= kLargestContradiction * (agreement.explained + agreement.contradicted)};
@@ -230,8 +225,15 @@ PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d
   };
   consider(scene.edges);
   if (best.matches || scene.print_known) return best;
-  for (const TagPrint& print : possiblePrints(scene.board))
-    if (const auto edges = edgesOf(scene.board, print); edges != scene.edges) consider(edges);
+  if (scene.board.type != BoardType::AprilGrid) {
+    for (const TagPrint& print : markerPrints(scene.board))
+      if (const auto edges = edgesOf(scene.board, print); edges != scene.edges) consider(edges);
+    return best;
+  }
+  const std::optional<TagReading> reading = readTags(crossings, scene.board);
+  if (!reading) return best;
+  consider(edgesOf(scene.board, reading->print));
+  if (!best.matches) best.numbers = {reading->smallest, reading->largest};
   return best;
 }
 

@@ -8,9 +8,19 @@
 #include <Eigen/Core>
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace evical {
+
+// A crossing on the board: its place, and the directions of the paper that its polarity allows, as counted in
+// EdgeMap; -1: the motion is along such edges.
+struct BoardCrossing {
+  Eigen::Vector2d at_m;
+  double tolerance_m;
+  int along_x, along_y;
+};
 
 // Scores of placements of a board of squares, best first, in the unit of circles: a placement that explains a
 // share of the crossings has measured that share of the points in view, and misses those that the crossings
@@ -25,6 +35,8 @@ struct PrintMatch {
   std::shared_ptr<const BoardEdges> edges;
   Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
   bool matches = false;  // hardly a crossing contradicts
+  std::optional<std::pair<int, int>> numbers =
+      {};  // if not: of an AprilGrid's tags in view, if they can be read
 };
 PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts,
                       const BurstWindow& window, const BoardScene& scene, double half_window_s);

@@ -1,6 +1,7 @@
 #include "core/geometry/board.h"
 
 #include "core/base/error.h"
+#include "core/geometry/marker_bits.h"
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -17,7 +18,6 @@ namespace evical {
 namespace {
 
 constexpr int kTagCorners = 4;
-constexpr int kTagsOfFamily = 587;
 
 Eigen::Vector2d tagCorner_m(const Board& board, int index) {
   static const std::array<Eigen::Vector2d, kTagCorners> kPlaces = {
@@ -210,10 +210,10 @@ void validate(const Board& board) {
   if (board.first_tag != 0 && !tags)
     throw badInput("board.first_tag", "applies to AprilGrids only", "Remove it");
   const int end = board.first_tag + board.rows * board.cols;
-  if (tags && (board.first_tag < 0 || end > kTagsOfFamily))
+  if (tags && (board.first_tag < 0 || end > kTagFamilySize))
     throw badInput("board.first_tag",
                    fmt::format("tags {} to {} are needed, but the family tag36h11 has 0 to {}",
-                               board.first_tag, end - 1, kTagsOfFamily - 1),
+                               board.first_tag, end - 1, kTagFamilySize - 1),
                    "Give the smallest number on the board, and the number of its rows and columns");
 }
 

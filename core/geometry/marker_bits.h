@@ -36,6 +36,7 @@ Eigen::Vector2d squareCorner_m(const Board& board, const BoardSquare& square);
 // The tags of AprilGrids: the family 36h11.
 
 inline constexpr int kTagSide_bits = 6;  // without the border
+inline constexpr int kTagFamilySize = 587;
 
 // Bright bits of a tag, row by row from its top left, without the border.
 class TagBits {
@@ -49,7 +50,7 @@ class TagBits {
   std::bitset<kTagSide_bits * kTagSide_bits> bright_;
 };
 
-// The first `count` tags by number; at most the 587 of the family.
+// The first `count` tags by number; at most those of the family.
 std::vector<TagBits> firstTags(int count);
 
 }  // namespace evical

@@ -74,12 +74,12 @@ Boxes tagGrid(const Board& board, const TagPrint& print) {
     for (int col = -1; col < board.cols; ++col)
       paintSquare(board.spacing_m * Eigen::Vector2d(col, row) + Eigen::Vector2d::Constant(board.tag_size_m),
                   gap_m, boxes);
-  for (int row = 0; row < board.rows; ++row) {
-    for (int col = 0; col < board.cols; ++col) {
-      const auto tag = static_cast<std::size_t>(board.first_tag + (board.rows - 1 - row) * board.cols + col);
-      const PatternBits bits = print.blank ? PatternBits() : turned(bitsOf(tags[tag]), print.quarter_turns);
-      paintTag(board.spacing_m * Eigen::Vector2d(col, row), board.tag_size_m, print.border_bits, bits, boxes);
-    }
+  for (int k = 0; k < board.rows * board.cols; ++k) {
+    const int square = squareOf(board, print.order, k);
+    const Eigen::Vector2d place(square % board.cols, board.rows - 1 - square / board.cols);
+    const auto tag = static_cast<std::size_t>(board.first_tag + k);
+    const PatternBits bits = print.blank ? PatternBits() : turned(bitsOf(tags[tag]), print.quarter_turns);
+    paintTag(board.spacing_m * place, board.tag_size_m, print.border_bits, bits, boxes);
   }
   return boxes;
 }

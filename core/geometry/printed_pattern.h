@@ -3,6 +3,7 @@
 
 #include "core/geometry/board.h"
 #include "core/geometry/marker_bits.h"
+#include "core/geometry/tag_layout.h"
 
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@ struct TagPrint {
   int border_bits = 2;                  // AprilGrid: 2 as in Kalibr, or 1
   std::string markers = kUsualMarkers;  // ChArUco board: name of ArUco's dictionary
   int quarter_turns = 0;                // of each tag or marker within its square, clockwise
+  TagOrder order = TagOrder::RowsUp;    // AprilGrid
   bool first_is_bright = false;         // ChArUco board: of its squares, the top left one
   bool blank = false;                   // dark tags without bits, bright squares without markers
 

@@ -2,6 +2,7 @@
 
 #include "core/geometry/homography.h"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -35,6 +36,14 @@ double meanDistance(const Eigen::Matrix3d& picture_from_board, const TagCorners&
   for (std::size_t k = 0; k < place_m.size(); ++k)
     sum += ((picture_from_board * place_m[k].homogeneous()).hnormalized() - corners_px[k]).norm();
   return sum / kTagCornerCount;
+}
+
+// "rotated by 90 deg clockwise within their squares"; empty for 0.
+std::string rotationText(int quarter_turns_counterclockwise) {
+  constexpr std::array kTurns = {"", "90 deg counterclockwise", "180 deg", "90 deg clockwise"};
+  if (quarter_turns_counterclockwise == 0) return {};
+  return std::string("rotated by ") + kTurns.at(static_cast<std::size_t>(quarter_turns_counterclockwise)) +
+         " within their squares";
 }
 
 }  // namespace
@@ -86,20 +95,35 @@ double agreementOfNeighbours(const std::vector<SeenTag>& tags, const std::vector
   return pairs > 0 ? static_cast<double>(agreeing) / pairs : 1.0;
 }
 
-std::string rotationText(int quarter_turns_counterclockwise) {
-  constexpr std::array kTurns = {"", "90 deg counterclockwise", "180 deg", "90 deg clockwise"};
-  if (quarter_turns_counterclockwise == 0) return {};
-  return std::string("rotated by ") + kTurns.at(static_cast<std::size_t>(quarter_turns_counterclockwise)) +
-         " within their squares";
-}
-
-std::string layoutText(const TagLayout& layout) {
+std::string layoutRemark(const TagLayout& layout) {
   constexpr std::array kOrders = {"", "row by row from the top left", "column by column from the bottom left",
                                   "column by column from the top left"};
+  if (layout == TagLayout{}) return {};
   std::string text = rotationText(layout.quarter_turns);
-  if (layout.order == TagOrder::RowsUp) return text;
-  if (!text.empty()) text += " and ";
-  return text + "numbered " + kOrders.at(static_cast<std::size_t>(layout.order));
+  if (layout.order != TagOrder::RowsUp) {
+    if (!text.empty()) text += " and ";
+    text += std::string("numbered ") + kOrders.at(static_cast<std::size_t>(layout.order));
+  }
+  return "compared with Kalibr's boards, the tags are " + text + "; this is accounted for";
+}
+
+std::string markerRemark(int quarter_turns_counterclockwise) {
+  const std::string text = rotationText(quarter_turns_counterclockwise % kTagCornerCount);
+  return text.empty() ? text
+                      : "compared with OpenCV's boards, the markers are " + text + "; this is accounted for";
+}
+
+std::string otherTagsText(const Board& board, int smallest, int largest) {
+  const int tags = board.rows * board.cols, first = board.first_tag, end = first + tags;
+  if (largest < end && smallest >= first) return {};
+  if (smallest != first && (smallest >= end || largest < first || largest - smallest + 1 == tags))
+    return fmt::format(
+        "tags {} to {} were detected, but a board of {} x {} tags from {} on has tags up to {}: this is "
+        "another board, or first_tag should be {}",
+        smallest, largest, board.rows, board.cols, first, end - 1, smallest);
+  return fmt::format(
+      "tag {} was detected, but a board of {} x {} tags has tags {} to {}: check rows and columns",
+      largest >= end ? largest : smallest, board.rows, board.cols, first, end - 1);
 }
 
 }  // namespace evical

@@ -47,9 +47,12 @@ TagCorners rotatedCorners(const TagCorners& square, int quarter_turns);
 double agreementOfNeighbours(const std::vector<SeenTag>& tags, const std::vector<TagCorners>& places_m,
                              double largest_error);
 
-// "rotated by 90 deg clockwise within their squares"; empty for 0.
-std::string rotationText(int quarter_turns_counterclockwise);
-// The difference from Kalibr's layout, as the end of a sentence on tags; empty if there is none.
-std::string layoutText(const TagLayout& layout);
+// The difference from Kalibr's layout, as a remark on the tags; empty if there is none.
+std::string layoutRemark(const TagLayout& layout);
+// The same for markers of ChArUco boards and OpenCV's.
+std::string markerRemark(int quarter_turns_counterclockwise);
+
+// Why tags with these numbers are not, or not all, of the board; empty if they are.
+std::string otherTagsText(const Board& board, int smallest, int largest);
 
 }  // namespace evical

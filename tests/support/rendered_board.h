@@ -3,10 +3,10 @@
 
 #include "core/frames/gray_image.h"
 #include "core/frames/plane_map.h"
-#include "core/geometry/tag_layout.h"
 #include "core/geometry/board.h"
 #include "core/geometry/camera_intrinsics.h"
 #include "core/geometry/so3.h"
+#include "core/geometry/tag_layout.h"
 
 #include <functional>
 #include <optional>

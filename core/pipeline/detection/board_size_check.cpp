@@ -81,6 +81,20 @@ std::string missingText(const AxisCheck& axis, std::size_t views) {
                      count, axis.line, never == 1 ? "was" : "were", views);
 }
 
+// "7 rows and 9 columns are visible", if enough views show both ends of a line.
+std::string visibleLines(const BoardObservations& observations, const Board& board) {
+  constexpr int kEnough = 3;
+  std::string text;
+  for (const bool of_rows : {true, false}) {
+    const LatticeEnds& ends = of_rows ? observations.extent.rows : observations.extent.cols;
+    if (ends.lines_lead < kEnough) continue;
+    const int more = (of_rows ? board.rows : board.cols) - board.lineCount(of_rows);
+    text +=
+        fmt::format("{}{} {}", text.empty() ? "" : " and ", ends.lines + more, of_rows ? "rows" : "columns");
+  }
+  return text.empty() ? text : ": " + text + " are visible";
+}
+
 }  // namespace
 
 std::string outcomes(const BoardObservations& observations) {
@@ -131,29 +145,30 @@ void checkBoardSeen(const BoardObservations& observations, const Board& board,
   if (10 * other_tags > static_cast<std::ptrdiff_t>(observations.windows.size()))
     throw calibrationFailed(
         observations.camera,
-        fmt::format("{}: corners of a {} are visible, but the tags between them are others", never,
-                    boardTypeName(board.type)),
-        board.type == BoardType::AprilGrid
-            ? fmt::format("Check rows, columns and first_tag {}. Tags {} to {} of the family tag36h11 are "
-                          "expected, with a border of 1 or 2 bits",
-                          howTo(HowTo::EditBoard), board.first_tag,
-                          board.first_tag + board.rows * board.cols - 1)
-            : fmt::format("Check rows and columns {}. Markers of ArUco's dictionaries are expected, from "
-                          "number 0 on",
-                          howTo(HowTo::EditBoard)));
+        fmt::format("{}: corners of {} are visible, but the tags between them are others", never,
+                    board.type == BoardType::AprilGrid ? "an AprilGrid" : "a ChArUco board"),
+        fmt::format(
+            "Check type, rows and columns {}{}. {}", howTo(HowTo::EditBoard),
+            visibleLines(observations, board),
+            board.type == BoardType::AprilGrid
+                ? fmt::format("Tags {} to {} of the family tag36h11 are expected, with a border of 1 or "
+                              "2 bits: check first_tag, too",
+                              board.first_tag, board.first_tag + board.rows * board.cols - 1)
+                : "Markers of ArUco's dictionaries are expected, from number 0 on"));
   int lattices = 0;
   for (const WindowReport& window : observations.windows) {
     lattices += window.outcome == WindowOutcome::TooFewInGrid || window.outcome == WindowOutcome::Ambiguous ||
                 window.outcome == WindowOutcome::RefinementFailed;
   }
   const bool other_board = 5 * lattices > static_cast<int>(observations.windows.size());
-  throw calibrationFailed(
-      observations.camera, never,
-      other_board
-          ? fmt::format("Rows of {} are visible, but no {} x {} board: check {} {}", pointsOf(board),
-                        board.rows, board.cols, whatToCheck(board), howTo(HowTo::EditBoard))
-          : "Check that the board is in view, in focus and moving, and check " + whatToCheck(board) + " " +
-                howTo(HowTo::EditBoard) + "; look at the detections " + howTo(HowTo::LookAtDetections));
+  throw calibrationFailed(observations.camera, never,
+                          other_board
+                              ? fmt::format("Rows of {} are visible, but no {} x {} board: check {} {}{}",
+                                            pointsOf(board), board.rows, board.cols, whatToCheck(board),
+                                            howTo(HowTo::EditBoard), visibleLines(observations, board))
+                              : "Check that the board is in view, in focus and moving, and check " +
+                                    whatToCheck(board) + " " + howTo(HowTo::EditBoard) +
+                                    "; look at the detections " + howTo(HowTo::LookAtDetections));
 }
 
 void checkBoardSize(const BoardObservations& observations, const Board& board, const ExtentOptions& options) {
@@ -197,7 +212,7 @@ void checkBoardSize(const BoardObservations& observations, const Board& board, c
                           "Check rows and columns " + howTo(HowTo::EditBoard) +
                               (larger && smaller && board.rows != board.cols
                                    ? fmt::format(": are they exchanged ({} and {})?", board.cols, board.rows)
-                                   : ""));
+                                   : visibleLines(observations, board)));
 }
 
 std::optional<RecordingFault> unseenCircles(const BoardObservations& observations, const Board& board) {

@@ -23,10 +23,21 @@
 namespace evical {
 namespace {
 
+// What a tracker noticed about the board.
+template <typename Tracker>
+void addRemarks(const Tracker& tracker, const SessionCamera& camera, std::vector<RecordingFault>& faults) {
+  const auto add = [&](FaultKind kind, const std::string& text) {
+    if (!text.empty()) faults.push_back({camera.stream, kind, 0.0, fmt::format("{}: {}", camera.name, text)});
+  };
+  add(FaultKind::BoardSize, tracker.doubt());
+  add(FaultKind::Guess, tracker.remark());
+}
+
 class EventViews final : public CameraViews {
  public:
   EventViews(const CameraBatch& first, const ViewRequest& request)
-      : tracker_(request.session.boardOf(first.camera), *first.opened_px, request.lens.detection_intrinsics,
+      : camera_(request.session.cameras[first.camera]),
+        tracker_(request.session.boardOf(first.camera), *first.opened_px, request.lens.detection_intrinsics,
                  *request.session.options.front_end, first.start_ns) {
     tracker_.stopWith(request.context.stop);
     if (request.context.observer != nullptr)
@@ -37,9 +48,14 @@ class EventViews final : public CameraViews {
     tracker_.addBursts(batch.bursts, batch.first_event_ns, batch.complete_until_ns);
   }
   const BoardObservations& soFar() const override { return tracker_.observations(); }
-  BoardObservations finish(std::vector<RecordingFault>& /*faults*/) override { return tracker_.finish(); }
+  BoardObservations finish(std::vector<RecordingFault>& faults) override {
+    BoardObservations observations = tracker_.finish();
+    addRemarks(tracker_, camera_, faults);
+    return observations;
+  }
 
  private:
+  const SessionCamera& camera_;
   BoardTracker tracker_;
 };
 
@@ -116,10 +132,7 @@ BoardObservations FrameViews::finish(std::vector<RecordingFault>& faults) {
                                   unreadable_ + decoded_, first_error_->what())});
   BoardObservations observations = tracker_.finish();
   observations.kind = CameraKind::Frames;
-  if (const std::string doubt = tracker_.doubt(); !doubt.empty())
-    faults.push_back({camera_.stream, FaultKind::BoardSize, 0.0, fmt::format("{}: {}", camera_.name, doubt)});
-  if (const std::string remark = tracker_.remark(); !remark.empty())
-    faults.push_back({camera_.stream, FaultKind::Guess, 0.0, fmt::format("{}: {}", camera_.name, remark)});
+  addRemarks(tracker_, camera_, faults);
   return throughLens(std::move(observations), resolution_px_.height_px, lens_);
 }
 
@@ -242,10 +255,7 @@ BoardObservations BlinkViews::finish(std::vector<RecordingFault>& faults) {
                         fmt::format("{}: blinks at {:.1f} Hz, {:.0f} % of the events; {} views of {} images",
                                     camera_.name, 1.0 / blink.period_s, 100.0 * blink.share,
                                     observations.views.size(), observations.windows.size()));
-  if (const std::string doubt = tracker_.doubt(); !doubt.empty())
-    faults.push_back({camera_.stream, FaultKind::BoardSize, 0.0, fmt::format("{}: {}", camera_.name, doubt)});
-  if (const std::string remark = tracker_.remark(); !remark.empty())
-    faults.push_back({camera_.stream, FaultKind::Guess, 0.0, fmt::format("{}: {}", camera_.name, remark)});
+  addRemarks(tracker_, camera_, faults);
   return lens_ ? inIdealPixels(observations, *lens_) : observations;
 }
 

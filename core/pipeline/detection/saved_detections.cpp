@@ -31,16 +31,16 @@ std::string boardYaml(const Board& board) {
 }
 
 std::string endsYaml(const LatticeEnds& ends) {
-  return fmt::format("[{}, {}, {}, {}]", ends.beyond_in_view, ends.beyond_seen, ends.edge_in_view,
-                     ends.edge_missing);
+  return fmt::format("[{}, {}, {}, {}, {}, {}]", ends.beyond_in_view, ends.beyond_seen, ends.edge_in_view,
+                     ends.edge_missing, ends.lines, ends.lines_lead);
 }
 
 LatticeEnds endsFrom(const YamlNode& node) {
   const std::vector<YamlNode> items = node.items();
-  if (items.size() != 4) throw node.error("must be four counts");
+  if (items.size() != 4 && items.size() != 6) throw node.error("must be four or six counts");
   constexpr int kMax = 1'000'000'000;
-  const auto count = [&](std::size_t k) { return items[k].integer(0, kMax); };
-  return {count(0), count(1), count(2), count(3)};
+  const auto count = [&](std::size_t k) { return k < items.size() ? items[k].integer(0, kMax) : 0; };
+  return {count(0), count(1), count(2), count(3), count(4), count(5)};
 }
 
 std::string cameraYaml(const SessionCamera& camera, const DetectionResult& detections, std::size_t k,

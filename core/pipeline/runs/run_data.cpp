@@ -77,7 +77,7 @@ EVICAL_FIELDS(CircleObservation, circle, time_s, centre_px, covariance_px2, velo
               rows_below_middle, longer_exposed_s);
 EVICAL_FIELDS(BoardView, time_s, kind, circles);
 EVICAL_FIELDS(WindowReport, time_s, half_width_s, outcome, events, candidates, circles, tracked);
-EVICAL_FIELDS(LatticeEnds, beyond_in_view, beyond_seen, edge_in_view, edge_missing);
+EVICAL_FIELDS(LatticeEnds, beyond_in_view, beyond_seen, edge_in_view, edge_missing, lines, lines_lead);
 EVICAL_FIELDS(BoardExtent, rows, cols);
 EVICAL_FIELDS(PolarityDelay, later_s, std_s);
 EVICAL_FIELDS(BoardObservations, camera, kind, views, windows, extent, events, polarity_delay, narrowest_px,

@@ -46,12 +46,17 @@ Scenario davis346Before(const Board& board, const TagPrint& print) {
   return scenario;
 }
 
-// The front end's observations of `shown` if the session states this board.
-BoardObservations detect(const Scenario& shown, const Board& stated) {
+// The front end's observations of `shown` if the session states this board; and what it noticed about it.
+struct Noticed {
+  std::string doubt, remark;
+};
+BoardObservations detect(const Scenario& shown, const Board& stated, Noticed* noticed = nullptr) {
   const CameraIntrinsics& lens = shown.cameras[0].intrinsics;
   BoardTracker tracker(stated, lens.resolution_px, lens, FrontEndOptions(), shown.start_ns);
   simulateEvents(shown, 0, [&](EventSpan span) { tracker.add(span); });
-  return tracker.finish();
+  BoardObservations observations = tracker.finish();
+  if (noticed != nullptr) *noticed = {tracker.doubt(), tracker.remark()};
+  return observations;
 }
 
 double shareOf(const BoardObservations& observations, std::initializer_list<WindowOutcome> outcomes) {
@@ -130,12 +135,16 @@ void TestSquares::board_isFound_data() {
   QTest::addColumn<int>("border");
   QTest::addColumn<int>("turns");
   QTest::addColumn<QString>("markers");
-  const auto row = [](const char* name, BoardType type, int border, int turns, const char* markers) {
-    QTest::newRow(name) << static_cast<int>(type) << border << turns << QString(markers);
+  QTest::addColumn<int>("order");
+  const auto row = [](const char* name, BoardType type, int border, int turns, const char* markers,
+                      TagOrder order = TagOrder::RowsUp) {
+    QTest::newRow(name) << static_cast<int>(type) << border << turns << QString(markers)
+                        << static_cast<int>(order);
   };
   row("checkerboard", BoardType::Checkerboard, 2, 0, kUsualMarkers);
   row("aprilgrid", BoardType::AprilGrid, 2, 0, kUsualMarkers);
   row("aprilgrid, tags turned", BoardType::AprilGrid, 2, 3, kUsualMarkers);
+  row("aprilgrid, numbered down", BoardType::AprilGrid, 2, 2, kUsualMarkers, TagOrder::RowsDown);
   row("charuco", BoardType::Charuco, 2, 0, kUsualMarkers);
   row("charuco, 4x4 markers", BoardType::Charuco, 2, 0, "4x4");
 }
@@ -145,10 +154,16 @@ void TestSquares::board_isFound() {
   QFETCH(int, border);
   QFETCH(int, turns);
   QFETCH(QString, markers);
+  QFETCH(int, order);
   const Scenario scenario =
-      davis346Before(squares(static_cast<BoardType>(type)),
-                     {.border_bits = border, .markers = markers.toStdString(), .quarter_turns = turns});
-  const BoardObservations found = detect(scenario, scenario.board);
+      davis346Before(squares(static_cast<BoardType>(type)), {.border_bits = border,
+                                                             .markers = markers.toStdString(),
+                                                             .quarter_turns = turns,
+                                                             .order = static_cast<TagOrder>(order)});
+  Noticed noticed;
+  const BoardObservations found = detect(scenario, scenario.board, &noticed);
+  QCOMPARE(noticed.remark.empty(), turns == 0 && order == static_cast<int>(TagOrder::RowsUp));
+  QCOMPARE(noticed.doubt, std::string());
   QVERIFY(found.windows.size() > 20);
   QVERIFY2(foundShare(found) >= 0.95, qPrintable(QString::number(foundShare(found))));
   const CornerErrors errors = errorsOf(scenario, found);
@@ -173,10 +188,13 @@ void TestSquares::wrongSession_isNamed() {
   scenario.motion.distance_m = distance_m;
   Board stated = scenario.board;
   stated.first_tag = first_tag;
-  const BoardObservations found = detect(scenario, stated);
+  Noticed noticed;
+  const BoardObservations found = detect(scenario, stated, &noticed);
   QCOMPARE(foundShare(found), 0.0);
-  if (outcome == static_cast<int>(WindowOutcome::OtherPattern))
+  if (outcome == static_cast<int>(WindowOutcome::OtherPattern)) {
     QVERIFY(shareOf(found, {WindowOutcome::OtherPattern}) > 0.8);
+    QVERIFY2(noticed.doubt.starts_with("tags 0 to 35 were detected"), noticed.doubt.c_str());
+  }
   Scenario numbered = scenario;
   numbered.board.first_tag = first_tag;
   if (first_tag > 0) QVERIFY(foundShare(detect(numbered, stated)) > 0.95);
@@ -185,8 +203,8 @@ void TestSquares::wrongSession_isNamed() {
 void TestSquares::boardOfOtherSize_isSeen_data() {
   QTest::addColumn<int>("type");
   QTest::addColumn<int>("more_rows");
-  for (const BoardType type : {BoardType::AprilGrid, BoardType::Charuco})
-    for (const int more : {-1, 0})
+  for (const BoardType type : {BoardType::Checkerboard, BoardType::AprilGrid, BoardType::Charuco})
+    for (const int more : {-1, 0, 2})
       QTest::addRow("%s, rows %+d", boardTypeName(type), more) << static_cast<int>(type) << more;
 }
 
@@ -197,6 +215,9 @@ void TestSquares::boardOfOtherSize_isSeen() {
   Board stated = scenario.board;
   stated.rows += more_rows;
   const BoardExtent extent = detect(scenario, stated).extent;
+  QVERIFY(extent.rows.lines_lead >= 3);
+  QCOMPARE(extent.rows.lines, scenario.board.lineCount(true));
+  if (more_rows > 0) return;
   QVERIFY(extent.rows.beyond_in_view > 0);
   if (more_rows < 0)
     QVERIFY(2 * extent.rows.beyond_seen > extent.rows.beyond_in_view);
