@@ -204,6 +204,50 @@ double weightOfAbsence(const LatticeEdges::Count& laid) {
 
 }  // namespace
 
+SlideCheck checkSlide(const BoardMotion& laid, const BurstWindow& window, const BoardScene& scene,
+                      double half_window_s) {
+  constexpr double kAgrees = 0.005,
+                   kContradicts = 0.1;  // contradicting crossings of a board that has not slid
+  constexpr int kFarthest_px = 6;
+  constexpr double kLeast_px = 0.25;
+  const std::vector<BoardCrossing> crossings =
+      crossingsOnBoard(laid, window, scene.edges->map, half_window_s, 0.0);
+  if (crossings.empty()) return {};
+  const double m_per_px = crossings.front().tolerance_m / kTolerance_px;
+  const auto movedBy = [&](const Eigen::Vector2d& px) {
+    Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
+    shift.topRightCorner<2, 1>() = m_per_px * px;
+    return shift;
+  };
+  const auto at = [&](const Eigen::Vector2d& px) {
+    return agreementOf(crossings, movedBy(px), scene.edges->map);
+  };
+  Agreement best = at(Eigen::Vector2d::Zero());
+  const auto contradictedShare = [](const Agreement& of) {
+    return of.contradicted / std::max(1.0, static_cast<double>(of.explained + of.contradicted));
+  };
+  if (contradictedShare(best) <= kAgrees) return {};
+  Eigen::Vector2d place_px = Eigen::Vector2d::Zero(), part_px = place_px;
+  for (const Eigen::Vector2d& axis : {Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(1.0, 0.0)}) {
+    std::array<Agreement, 2> beside;  // before and after
+    for (int step = 0; step < kFarthest_px; ++step) {
+      beside = {at(place_px - axis), at(place_px + axis)};
+      const std::size_t better = beside[1].value() > beside[0].value() ? 1 : 0;
+      if (beside[better].value() <= best.value()) break;
+      best = beside[better];
+      place_px += better == 1 ? axis : Eigen::Vector2d(-axis);
+    }
+    // Agreement decreases about linearly on both sides.
+    const double fall = best.value() - std::min(beside[0].value(), beside[1].value());
+    if (fall > 0.0) part_px += 0.5 * (beside[1].value() - beside[0].value()) / fall * axis;
+  }
+  SlideCheck check;
+  place_px += part_px;
+  if (place_px.norm() > kLeast_px) check.moved = shifted(laid, movedBy(place_px));
+  check.contradicted = contradictedShare(best) > kContradicts;
+  return check;
+}
+
 PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d>& shifts,
                       const BurstWindow& window, const BoardScene& scene, double half_window_s) {
   // Placements and prints other than the true ones contradict 2.5 % of the crossings or more, the true ones

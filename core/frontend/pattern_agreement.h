@@ -29,6 +29,15 @@ std::vector<PlacementScore> rivalPatterns(const BoardMotion& laid, const std::ve
                                           const BurstWindow& window, const BoardScene& scene,
                                           double half_window_s, const TrackingOptions& options);
 
+// Check of a tracked placement. Edges along the motion cause no events, so that a fit may slide along the
+// others; their ends, and the bits of tags, show it.
+struct SlideCheck {
+  std::optional<BoardMotion> moved;  // by a few pixels to where the crossings agree, if it slid
+  bool contradicted = false;         // by many crossings, wherever it is moved to
+};
+SlideCheck checkSlide(const BoardMotion& laid, const BurstWindow& window, const BoardScene& scene,
+                      double half_window_s);
+
 // Properties of the print that a session does not state, and the placement, of all those that are possible
 // the ones that agree best.
 struct PrintMatch {

@@ -3,7 +3,10 @@
 #include "core/base/time.h"
 #include "core/frontend/board_motion.h"
 #include "core/frontend/board_placement.h"
+#include "core/frontend/pattern_agreement.h"
 #include "core/geometry/homography.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +35,28 @@ TrackingEnd endOf(int found, int expected, bool single_events, const FrontEndOpt
   if (found < (single_events ? kMinExpectedForSingleEvents : kMinExpected) * expected)
     return TrackingEnd::TooFewOfExpected;
   return TrackingEnd::Held;
+}
+
+// Moves a board of squares back if it slid along its edges since its last window. False if the crossings
+// contradict its place.
+bool holdsInPlace(const BurstWindow& window, const BoardScene& scene, const WindowSlot& slot,
+                  const BoardMotion& last, const TrackingOptions& options, BoardMotion& motion) {
+  if (!scene.edges || scene.single_events) return true;
+  SlideCheck check = checkSlide(motion, window, scene, slot.half_s());
+  if (!check.moved) return !check.contradicted;
+  BoardMotion& moved = *check.moved;
+  const double since_s = static_cast<double>(motion.time_ns - last.time_ns) * 1e-9;
+  if (std::abs(since_s) > slot.half_s()) {
+    const Eigen::Vector3d middle = (0.5 * scene.board.extent_m() + scene.board.corner_m()).homogeneous();
+    const Eigen::Vector2d slide_px =
+        (moved.ideal_from_board * middle).hnormalized() - (motion.ideal_from_board * middle).hnormalized();
+    moved.velocity_px_s(0) += slide_px.x() / since_s;
+    moved.velocity_px_s(3) += slide_px.y() / since_s;
+  }
+  const std::optional<BoardMotion> fitted =
+      fitBoardMotion(window, moved, scene, options.last_gate_px, options);
+  motion = fitted.value_or(moved);
+  return !check.contradicted;
 }
 
 }  // namespace
@@ -71,7 +96,7 @@ WindowTrace trackWindow(const TrackingInput& input, const WindowSlot& slot, cons
   trace.report.outcome = WindowOutcome::RefinementFailed;
   trace.motion =
       fitBoardMotion(window, trace.prediction, scene, firstGate_px(last, slot, input.options), options);
-  if (!trace.motion) return trace;
+  if (!trace.motion || !holdsInPlace(window, scene, slot, last, options, *trace.motion)) return trace;
   trace.circles = measureCircles(window, *trace.motion, scene, {slot.half_s(), input.start_ns}, options,
                                  detail == TraceDetail::Everything ? &trace.measurement : nullptr);
   trace.report.circles = static_cast<int>(trace.circles.size());
