@@ -89,6 +89,19 @@ inline double crossingWeight(double leads, double events, double typical_events,
   return weight * ramp(events / typical_events, options.min_event_part, options.full_event_part);
 }
 
+// Sign of the leads of bursts that can have a weight at a straight edge that moves so; 0 if none can: it
+// moves along itself. NaN if any can: at a round outline, or if the motion is too slow or hardly across.
+// `turns` is the uncertainty of the cosine between normal and motion.
+inline double usefulLead(const OutlineImage& outline, const Eigen::Vector2d& velocity_px_s, double turns,
+                         const TrackingOptions& options) {
+  constexpr double kSlow_px_s = 15.0;
+  const double speed_px_s = velocity_px_s.norm();
+  if (!outline.isStraight() || speed_px_s < kSlow_px_s) return NAN;
+  const double cosine = outline.normal.dot(velocity_px_s) / speed_px_s;
+  if (std::abs(cosine) + turns < options.min_polarity_cosine) return 0.0;
+  return std::abs(cosine) < turns ? NAN : std::copysign(1.0, cosine);
+}
+
 // Fits homography, velocity field and radius offset to the bursts of a window whose middle is start.time_ns.
 // `first_gate_px` as in the options, or wider after a search. Empty if too few bursts are near the edges.
 std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const BoardMotion& start,

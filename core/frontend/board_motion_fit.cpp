@@ -18,6 +18,7 @@ namespace {
 constexpr int kFlowTerms = 8;
 constexpr int kUnknowns = 3 * kFlowTerms + 1;  // shift, velocity, acceleration, radius offset
 constexpr double kSquare = 0.8;                // cosine
+constexpr double kEdgeMoves_px = 1.0;          // during the fit, of a board of squares
 using NormalMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using NormalVector = Eigen::Matrix<double, kUnknowns, 1>;
 
@@ -80,9 +81,12 @@ struct OutlineMotion {
 
 // Bursts that may be near the circle's edge at any time of the fit.
 void gatherPoints(const BurstWindow& window, const OutlineMotion& moving, double half_window_s,
-                  double slack_px, std::vector<FitPoint>& points) {
+                  double slack_px, const TrackingOptions& options, std::vector<FitPoint>& points) {
+  constexpr double kTurns = 0.25;  // during the fit
   points.clear();
   const OutlineImage& outline = moving.outline;
+  const double lead = usefulLead(outline, moving.velocity, kTurns, options);
+  if (lead == 0.0) return;
   const double speed = moving.velocity.norm() + 0.5 * half_window_s * moving.acceleration.norm();
   const Eigen::Vector2d reach =
       outline.sensor_reach_px.array() + slack_px + speed * half_window_s / outline.scale();
@@ -93,7 +97,7 @@ void gatherPoints(const BurstWindow& window, const OutlineMotion& moving, double
                   middle.y() + reach.y(), [&](auto i) {
                     const WindowBurst& burst = window.bursts()[i];
                     const double t = burst.time_s;
-                    if (std::abs(t) > half_window_s) return;
+                    if (std::abs(t) > half_window_s || burst.lead * lead < 0.0) return;
                     const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
                     const Eigen::Vector2d at_middle =
                         pixel - t * (moving.velocity + 0.5 * t * moving.acceleration);
@@ -193,7 +197,9 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
     for (const OutlineImage& outline : projectBoard(motion.ideal_from_board, scene)) {
       const OutlineMotion moving(outline, motion);
       std::vector<FitPoint>& near = points[static_cast<std::size_t>(outline.index)];
-      if (iteration == 0) gatherPoints(window, moving, half_window_s, 2.0 * first_gate_px, near);
+      // Edges of squares are close to each other.
+      const double slack_px = outline.isStraight() ? first_gate_px + kEdgeMoves_px : 2.0 * first_gate_px;
+      if (iteration == 0) gatherPoints(window, moving, half_window_s, slack_px, options, near);
       std::array<SectorSums, kOutlineSectors> sectors;
       sumSectors(moving, near, motion, gate_px, options, sectors, equations);
       for (const SectorSums& sums : sectors) addSector(sums, motion.frame, equations);

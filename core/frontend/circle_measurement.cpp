@@ -29,7 +29,10 @@ struct EdgePoint {
 void gatherEdgePoints(const BurstWindow& window, const OutlineImage& outline, std::uint8_t number,
                       const BoardMotion& motion, double half_slot_s, const TrackingOptions& options,
                       std::vector<EdgePoint>& points) {
+  constexpr double kTurns = 0.1;  // by acceleration
   const Eigen::Vector2d velocity = motion.velocityAt(outline.centre_px);
+  const double lead = usefulLead(outline, velocity, kTurns, options);
+  if (lead == 0.0) return;
   const Eigen::Vector2d acceleration = motion.accelerationAt(outline.centre_px);
   const double speed = velocity.norm() + 0.5 * half_slot_s * acceleration.norm();
   // Limit of gates: the fit's last gate plus the largest deviation of a circle from the board's fit.
@@ -40,7 +43,7 @@ void gatherEdgePoints(const BurstWindow& window, const OutlineImage& outline, st
   const auto visit = [&](std::uint32_t i) {
     const WindowBurst& burst = window.bursts()[i];
     const double time_s = burst.time_s;
-    if (std::abs(time_s) > half_slot_s) return;
+    if (std::abs(time_s) > half_slot_s || burst.lead * lead < 0.0) return;
     const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
     const Eigen::Vector2d at_middle = pixel - motion.travel(pixel, time_s);
     const EdgeDistance edge = distanceToEdge(outline, at_middle);

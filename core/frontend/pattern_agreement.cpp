@@ -22,6 +22,7 @@ constexpr double kMinCosine = 0.5;     // between the motion and the normal of a
 
 std::vector<BoardCrossing> crossingsOnBoard(const BoardMotion& motion, const BurstWindow& window,
                                             const EdgeMap& map, double half_window_s, double beyond) {
+  constexpr double kRoughly = 0.1;  // of the board's size: farther than any burst moves in a window
   const Eigen::Matrix3d board_from_ideal = motion.ideal_from_board.inverse();
   std::vector<BoardCrossing> crossings;
   for (const WindowBurst& burst : window.bursts()) {
@@ -29,6 +30,8 @@ std::vector<BoardCrossing> crossingsOnBoard(const BoardMotion& motion, const Bur
     if (std::abs(time_s) > half_window_s) continue;
     const Eigen::Vector2d pixel(burst.ideal_x_px, burst.ideal_y_px);
     if (!pixel.allFinite()) continue;
+    // Most bursts are elsewhere, and their motion is not needed.
+    if (!map.isAround((board_from_ideal * pixel.homogeneous()).hnormalized(), beyond + kRoughly)) continue;
     const Eigen::Vector2d velocity = motion.velocityAt(pixel) + time_s * motion.accelerationAt(pixel);
     const Eigen::Vector2d at_middle = pixel - motion.travel(pixel, time_s);
     const Eigen::Vector3d on_board = board_from_ideal * at_middle.homogeneous();
@@ -48,6 +51,16 @@ std::vector<BoardCrossing> crossingsOnBoard(const BoardMotion& motion, const Bur
                          directionOf(cosine.x(), EdgeMap::kPlusX), directionOf(cosine.y(), EdgeMap::kPlusY)});
   }
   return crossings;
+}
+
+// A part of the crossings is enough where placements are many or each window is looked at.
+void thinOut(std::vector<BoardCrossing>& crossings) {
+  constexpr std::size_t kEnough = 2000;
+  const std::size_t step = crossings.size() / kEnough;
+  if (step < 2) return;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < crossings.size(); k += step) crossings[count++] = crossings[k];
+  crossings.resize(count);
 }
 
 // The direction of the paper, turned from the present placement to a rival's.
@@ -210,9 +223,9 @@ SlideCheck checkSlide(const BoardMotion& laid, const BurstWindow& window, const 
                    kContradicts = 0.1;  // contradicting crossings of a board that has not slid
   constexpr int kFarthest_px = 6;
   constexpr double kLeast_px = 0.25;
-  const std::vector<BoardCrossing> crossings =
-      crossingsOnBoard(laid, window, scene.edges->map, half_window_s, 0.0);
+  std::vector<BoardCrossing> crossings = crossingsOnBoard(laid, window, scene.edges->map, half_window_s, 0.0);
   if (crossings.empty()) return {};
+  thinOut(crossings);
   const double m_per_px = crossings.front().tolerance_m / kTolerance_px;
   const auto movedBy = [&](const Eigen::Vector2d& px) {
     Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
@@ -288,7 +301,8 @@ std::vector<PlacementScore> rivalPatterns(const BoardMotion& laid, const std::ve
   const bool tags = scene.board.hasTags();
   const double beyond = tags ? 0.0 : 0.5;  // of the board's size
   const EdgeMap& map = scene.edges->map;
-  const std::vector<BoardCrossing> crossings = crossingsOnBoard(laid, window, map, half_window_s, beyond);
+  std::vector<BoardCrossing> crossings = crossingsOnBoard(laid, window, map, half_window_s, beyond);
+  if (tags) thinOut(crossings);
   const auto on_board = static_cast<double>(
       std::count_if(crossings.begin(), crossings.end(),
                     [&](const BoardCrossing& crossing) { return map.contains(crossing.at_m); }));
