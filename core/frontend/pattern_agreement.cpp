@@ -220,7 +220,7 @@ double weightOfAbsence(const LatticeEdges::Count& laid) {
 SlideCheck checkSlide(const BoardMotion& laid, const BurstWindow& window, const BoardScene& scene,
                       double half_window_s) {
   constexpr double kAgrees = 0.005,
-                   kContradicts = 0.1;  // contradicting crossings of a board that has not slid
+                   kContradicts = 0.1;  // contradicting crossings of the true placement
   constexpr int kFarthest_px = 6;
   constexpr double kLeast_px = 0.25;
   std::vector<BoardCrossing> crossings = crossingsOnBoard(laid, window, scene.edges->map, half_window_s, 0.0);

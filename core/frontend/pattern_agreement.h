@@ -33,7 +33,7 @@ std::vector<PlacementScore> rivalPatterns(const BoardMotion& laid, const std::ve
 // others; their ends, and the bits of tags, show it.
 struct SlideCheck {
   std::optional<BoardMotion> moved;  // by a few pixels to where the crossings agree, if it slid
-  bool contradicted = false;         // by many crossings, wherever it is moved to
+  bool contradicted = false;         // by many crossings, also after such a move
 };
 SlideCheck checkSlide(const BoardMotion& laid, const BurstWindow& window, const BoardScene& scene,
                       double half_window_s);

@@ -117,12 +117,26 @@ class TagScores {
   int count_ = 0;
 };
 
-// A way to number the squares of the board as it lies: by order, rotation of the tags, and that of the board.
+// A way to number the squares of the board in its placement: by order, rotation of the tags, and that of the
+// board.
 struct Numbering {
   TagPrint print;
-  int turn = 0;              // of the tags as they lie, clockwise
+  int turn = 0;              // of the tags in the placement, clockwise
   std::vector<int> squares;  // with the first tag, the second, ...; row by row from the top left
+
+  int count() const { return static_cast<int>(squares.size()); }
+  int square(int k) const { return squares[static_cast<std::size_t>(k)]; }
 };
+
+// Place, row by row from the top left, of a square with Kalibr's number on a board that is turned clockwise.
+int turnedSquare(const Board& board, int square, int turn) {
+  int col = square % board.cols, row = board.rows - 1 - square / board.cols;
+  if (turn >= 2) {
+    col = board.cols - 1 - col;
+    row = board.rows - 1 - row;
+  }
+  return turn % 2 == 0 ? row * board.cols + col : col * board.cols + board.rows - 1 - row;
+}
 
 std::vector<Numbering> numberingsOf(const Board& board, int border_bits) {
   std::vector<Numbering> numberings;
@@ -135,55 +149,60 @@ std::vector<Numbering> numberingsOf(const Board& board, int border_bits) {
       numbering.print.quarter_turns = (kTurns - layout.quarter_turns) % kTurns;
       numbering.turn = (numbering.print.quarter_turns + turn) % kTurns;
       for (int k = 0; k < board.rows * board.cols; ++k) {
-        const int square = squareOf(board, layout.order, k);
-        int col = square % board.cols, row = board.rows - 1 - square / board.cols;
-        if (turn >= 2) {
-          col = board.cols - 1 - col;
-          row = board.rows - 1 - row;
-        }
-        if (turn % 2 != 0) {
-          const int before = col;
-          col = board.rows - 1 - row;
-          row = before;
-        }
-        numbering.squares.push_back(row * board.cols + col);
+        numbering.squares.push_back(turnedSquare(board, squareOf(board, layout.order, k), turn));
       }
     }
   }
   return numberings;
 }
 
+// The numbers that agree best with the crossings, of those that were tried.
+class BestNumbers {
+ public:
+  // The board's placement may be off by some rows, so that its first tag does not exist.
+  void tryAll(const TagScores& scores, const Numbering& numbering) {
+    for (int first = -numbering.count(); first < kTagFamilySize; ++first) {
+      int value = 0;
+      for (int k = 0; k < numbering.count(); ++k)
+        value += scores.of(numbering.square(k), first + k, numbering.turn);
+      second_value_ = std::max(second_value_, std::min(value, value_));
+      if (value > value_) keep(value, scores, numbering, first);
+    }
+  }
+
+  std::optional<TagReading> reading() const {
+    constexpr double kMinAgreement = 0.4, kMinLead = 0.1;  // of the crossings at bits
+    const bool is_clear =
+        value_ > kMinAgreement * crossings_ && value_ - second_value_ > kMinLead * crossings_;
+    return is_clear && best_.smallest >= 0 && best_.smallest <= best_.largest ? std::optional(best_)
+                                                                              : std::nullopt;
+  }
+
+ private:
+  void keep(int value, const TagScores& scores, const Numbering& numbering, int first) {
+    value_ = value;
+    crossings_ = scores.count();
+    best_ = {numbering.print, kTagFamilySize, -1};
+    for (int k = 0; k < numbering.count(); ++k) {
+      if (!scores.isInView(numbering.square(k))) continue;
+      best_.smallest = std::min(best_.smallest, first + k);
+      best_.largest = std::max(best_.largest, first + k);
+    }
+  }
+
+  TagReading best_;
+  int value_ = 0, second_value_ = 0, crossings_ = 0;
+};
+
 }  // namespace
 
 std::optional<TagReading> readTags(const std::vector<BoardCrossing>& crossings, const Board& board) {
-  constexpr double kMinAgreement = 0.4, kMinLead = 0.1;  // of the crossings at bits
-  TagReading best;
-  int best_value = 0, second_value = 0, count = 0;
+  BestNumbers best;
   for (const int border_bits : {2, 1}) {
     const TagScores scores(crossings, board, border_bits);
-    for (const Numbering& numbering : numberingsOf(board, border_bits)) {
-      const auto tags = static_cast<int>(numbering.squares.size());
-      // The board may lie some rows off its place.
-      for (int first = -tags; first < kTagFamilySize; ++first) {
-        int value = 0;
-        for (int k = 0; k < tags; ++k)
-          value += scores.of(numbering.squares[static_cast<std::size_t>(k)], first + k, numbering.turn);
-        second_value = std::max(second_value, std::min(value, best_value));
-        if (value <= best_value) continue;
-        best_value = value;
-        count = scores.count();
-        best = {numbering.print, kTagFamilySize, -1};
-        for (int k = 0; k < tags; ++k) {
-          const int tag = first + k;
-          if (!scores.isInView(numbering.squares[static_cast<std::size_t>(k)])) continue;
-          best.smallest = std::min(best.smallest, tag);
-          best.largest = std::max(best.largest, tag);
-        }
-      }
-    }
+    for (const Numbering& numbering : numberingsOf(board, border_bits)) best.tryAll(scores, numbering);
   }
-  const bool is_clear = best_value > kMinAgreement * count && best_value - second_value > kMinLead * count;
-  return is_clear && best.smallest >= 0 && best.smallest <= best.largest ? std::optional(best) : std::nullopt;
+  return best.reading();
 }
 
 }  // namespace evical

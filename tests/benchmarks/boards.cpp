@@ -20,7 +20,6 @@
 #include "tests/support/test_folders.h"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include <QTemporaryDir>
 
@@ -154,47 +153,6 @@ const std::vector<Family>& families() {
        }},
   };
   return all;
-}
-
-// Windows with a corner that is nearer to the place of another one than to its own. Only along directions in
-// which the corner is known.
-int wrongWindows(const Scenario& scenario, const BoardObservations& observations) {
-  constexpr double kUnknown_px = 2.0, kWrong = 0.4;  // of the smallest step
-  const Board& board = scenario.board;
-  const double step_m = board.type == BoardType::AprilGrid
-                            ? std::min(board.tag_size_m, board.spacing_m - board.tag_size_m)
-                            : board.spacing_m;
-  const double f_px = idealFocalLength_px(scenario.cameras[0].intrinsics).minCoeff();
-  const double step_px = step_m * f_px / (scenario.motion.distance_m + scenario.motion.distance_amplitude_m);
-  const SinusoidMotion motion(scenario);
-  int wrong = 0;
-  for (const BoardView& view : observations.views) {
-    const std::vector<TrueCircle> at_view = trueBoardView(motion, scenario, 0, view.time_s);
-    const auto isWrongAt = [&](const CircleObservation& corner, double time_s,
-                               const std::vector<TrueCircle>& truths) {
-      const auto truth = std::find_if(truths.begin(), truths.end(),
-                                      [&](const TrueCircle& each) { return each.circle == corner.circle; });
-      if (truth == truths.end()) return true;
-      const Eigen::Vector2d error_px =
-          corner.centre_px + (time_s - corner.time_s) * corner.velocity_px_s - truth->centre_px;
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(corner.covariance_px2);
-      for (Eigen::Index k = 0; k < 2; ++k)
-        if (axes.eigenvalues()[k] < kUnknown_px * kUnknown_px &&
-            std::abs(axes.eigenvectors().col(k).dot(error_px)) > std::max(kWrong * step_px, 1.5))
-          return true;
-      return false;
-    };
-    // The corner's own time counts; the view's is faster to compare with.
-    const auto isWrong = [&](const CircleObservation& corner) {
-      return isWrongAt(corner, view.time_s, at_view) &&
-             isWrongAt(corner, corner.time_s, trueBoardView(motion, scenario, 0, corner.time_s));
-    };
-    const auto corners = std::count_if(view.circles.begin(), view.circles.end(), isWrong);
-    if (corners > 0)
-      fmt::print(stderr, "wrong at {:.3f} s: {} of {} corners\n", view.time_s, corners, view.circles.size());
-    wrong += corners > 0;
-  }
-  return wrong;
 }
 
 struct Rms {

@@ -6,6 +6,7 @@
 #include "core/synthetic/sinusoid_motion.h"
 
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace evical::benchmarks {
@@ -141,6 +142,44 @@ void ErrorAgreement::print() const {
   };
   printLater("the mean of a window", windows_px2_);
   printLater("a circle, less the mean,", circles_px2_);
+}
+
+int wrongWindows(const Scenario& scenario, const BoardObservations& observations) {
+  constexpr double kUnknown_px = 2.0, kWrong = 0.4;  // of the smallest step
+  const Board& board = scenario.board;
+  const double step_m = board.type == BoardType::AprilGrid
+                            ? std::min(board.tag_size_m, board.spacing_m - board.tag_size_m)
+                            : board.spacing_m;
+  const double f_px = idealFocalLength_px(scenario.cameras[0].intrinsics).minCoeff();
+  const double step_px = step_m * f_px / (scenario.motion.distance_m + scenario.motion.distance_amplitude_m);
+  const SinusoidMotion motion(scenario);
+  int wrong = 0;
+  for (const BoardView& view : observations.views) {
+    const std::vector<TrueCircle> at_view = trueBoardView(motion, scenario, 0, view.time_s);
+    const auto isWrongAt = [&](const CircleObservation& corner, double time_s,
+                               const std::vector<TrueCircle>& truths) {
+      const TrueCircle* const truth = find(truths, corner.circle);
+      if (truth == nullptr) return true;
+      const Eigen::Vector2d error_px =
+          corner.centre_px + (time_s - corner.time_s) * corner.velocity_px_s - truth->centre_px;
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(corner.covariance_px2);
+      for (Eigen::Index k = 0; k < 2; ++k)
+        if (axes.eigenvalues()[k] < kUnknown_px * kUnknown_px &&
+            std::abs(axes.eigenvectors().col(k).dot(error_px)) > std::max(kWrong * step_px, 1.5))
+          return true;
+      return false;
+    };
+    // The corner's own time counts; the view's is faster to compare with.
+    const auto isWrong = [&](const CircleObservation& corner) {
+      return isWrongAt(corner, view.time_s, at_view) &&
+             isWrongAt(corner, corner.time_s, trueBoardView(motion, scenario, 0, corner.time_s));
+    };
+    const auto corners = std::count_if(view.circles.begin(), view.circles.end(), isWrong);
+    if (corners > 0)
+      fmt::print(stderr, "wrong at {:.3f} s: {} of {} corners\n", view.time_s, corners, view.circles.size());
+    wrong += corners > 0;
+  }
+  return wrong;
 }
 
 }  // namespace evical::benchmarks

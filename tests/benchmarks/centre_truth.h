@@ -30,6 +30,10 @@ struct CentreError {
 
 std::vector<CentreError> errorsOf(const Scenario& scenario, const BoardObservations& observations);
 
+// Windows of a board of squares with a corner that is nearer to the place of another one than to its own;
+// only along directions in which the corner is known. Prints their times.
+int wrongWindows(const Scenario& scenario, const BoardObservations& observations);
+
 // Delay, lead, and one number more, by least squares; the few wild errors hardly count.
 struct ErrorFit {
   double delay_s = 0.0, lead_px = 0.0, third = 0.0;

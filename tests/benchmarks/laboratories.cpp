@@ -115,8 +115,9 @@ void keepDetections(const std::filesystem::path& file, const Outcome& outcome,
 std::string describe(const Scenario& scenario) {
   const CameraIntrinsics& camera = scenario.cameras.front().intrinsics;
   return fmt::format(
-      "{}x{}{}, {}x{}{}, {:.0f} px/s", camera.resolution_px.width_px, camera.resolution_px.height_px,
-      camera.model == CameraModel::PinholeRadtan ? "" : " fisheye", scenario.board.rows, scenario.board.cols,
+      "{}x{}{}, {} {}x{}{}, {:.0f} px/s", camera.resolution_px.width_px, camera.resolution_px.height_px,
+      camera.model == CameraModel::PinholeRadtan ? "" : " fisheye", boardTypeName(scenario.board.type),
+      scenario.board.rows, scenario.board.cols,
       scenario.board.circles == CircleShade::Bright ? " bright" : "", scenario.motion.image_speed_px_s);
 }
 
@@ -125,7 +126,7 @@ struct Results {
   std::string family, variant;
   std::vector<Outcome> outcomes;
   std::vector<double> rotation_deg, translation_mm;  // where the sigma of the translation is small
-  int failed = 0, doubtful = 0, wrong = 0;
+  int failed = 0, doubtful = 0, wrong = 0, wrong_windows = 0;
 
   void add(const Scenario& scenario, Outcome outcome);
   bool print() const;
@@ -168,7 +169,7 @@ bool Results::print() const {
       family, variant, results, outcomes.size(), results - static_cast<std::size_t>(doubtful), doubtful,
       wrong, medianOf(rotation_deg), medianOf(translation_mm), rotation_deg.size(), errors.rotation.rms(),
       errors.translation.rms(), errors.time_offset.rms(), errors.all.rms());
-  return failed == 0 && wrong == 0 && errors.areRight();
+  return failed == 0 && wrong == 0 && wrong_windows == 0 && errors.areRight();
 }
 
 std::vector<std::string> variantsOf(const Arguments& arguments) {
@@ -205,6 +206,8 @@ std::vector<Results> runFamily(const Arguments& arguments, std::size_t family, L
       subtractPixelDelay(fit.delay_s, outcome);
       if (arguments.quantities) printQuantities(outcome);
       if (!std::filesystem::exists(file)) keepDetections(file, outcome, detections);
+      if (is_first && !scenario.board.hasCircles())
+        each.wrong_windows += wrongWindows(scenario, detections.cameras.front());
       if (is_first && arguments.faults > 0) faults.add(scenario, detections, outcome, arguments.faults);
       each.add(scenario, std::move(outcome));
     }

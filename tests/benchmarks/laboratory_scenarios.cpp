@@ -67,6 +67,29 @@ void drawBoard(Dice& dice, Scenario& scenario) {
   scenario.board.circles = dice.chance(0.25) ? CircleShade::Bright : CircleShade::Dark;
 }
 
+void drawSquares(Dice& dice, Scenario& scenario) {
+  constexpr std::array<std::array<int, 2>, 5> kCheckerboards = {{{6, 9}, {8, 5}, {7, 10}, {5, 6}, {8, 11}}},
+                                              kTags = {{{6, 6}, {5, 4}, {4, 6}, {4, 4}, {5, 7}}},
+                                              kMarkers = {{{5, 7}, {6, 8}, {7, 5}, {5, 8}, {4, 6}}};
+  Board& board = scenario.board;
+  board.type = dice.oneOf(std::array{BoardType::Checkerboard, BoardType::AprilGrid, BoardType::Charuco});
+  const bool tags = board.type == BoardType::AprilGrid, markers = board.type == BoardType::Charuco;
+  const std::array<int, 2>& size = dice.oneOf(tags ? kTags : markers ? kMarkers : kCheckerboards);
+  board.rows = size[0];
+  board.cols = size[1];
+  board.spacing_m = dice.between(0.03, 0.08);
+  board.radius_m = 0.0;
+  board.circles = CircleShade::Dark;
+  if (tags) board.tag_size_m = board.spacing_m / dice.between(1.25, 1.35);
+  if (markers) board.tag_size_m = board.spacing_m * dice.between(0.7, 0.8);
+  if (tags) board.first_tag = dice.chance(0.3) ? static_cast<int>(dice.between(1.0, 500.0)) : 0;
+  TagPrint& print = scenario.tag_print;
+  print.border_bits = dice.chance(0.3) ? 1 : 2;
+  print.quarter_turns = dice.chance(0.3) ? static_cast<int>(dice.between(0.0, 3.99)) : 0;
+  if (tags && dice.chance(0.3)) print.order = TagOrder::RowsDown;
+  if (markers) print.markers = dice.oneOf(std::array<const char*, 3>{"4x4", "5x5", "6x6"});
+}
+
 void drawPixels(Dice& dice, EventPixelModel& pixel) {
   const bool dim = dice.chance(0.25);
   pixel.threshold_on = dice.between(0.2, 0.5);
@@ -194,6 +217,9 @@ void setFamily(LaboratoryFamily family, Dice& dice, Scenario& scenario) {
       scenario.scene.clutter_object_share = 0.9;
       scenario.scene.clutter_round_share = 0.8;
       break;
+    case LaboratoryFamily::Squares:
+      motion.roll_rad += kRadPerDeg * 90.0 * std::floor(dice.between(0.0, 2.0)) * 2.0;
+      break;
   }
 }
 
@@ -210,6 +236,7 @@ Scenario drawLaboratory(LaboratoryFamily family, int number, bool exact) {
   const Eigen::Vector3d tilted = Eigen::Vector3d{dice.normal(0.05), 1.0, dice.normal(0.05)}.normalized();
   scenario.gravity_in_world_m_s2 = 9.81 * tilted;
   drawBoard(dice, scenario);
+  if (family == LaboratoryFamily::Squares) drawSquares(dice, scenario);
   drawCamera(dice, scenario);
   drawImu(dice, scenario);
   drawMotion(dice, scenario);

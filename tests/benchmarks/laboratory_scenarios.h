@@ -10,10 +10,10 @@
 namespace evical::benchmarks {
 
 // Usual: everything as drawn. Memory: pixels with a refractory period of 1 ms. Clutter: discs around the
-// board.
-enum class LaboratoryFamily { Usual, Calm, Brisk, Dim, Memory, Clutter };
-inline constexpr std::array<std::string_view, 6> kLaboratoryFamilies = {"usual", "calm",   "brisk",
-                                                                        "dim",   "memory", "clutter"};
+// board. Squares: checkerboards, AprilGrids and ChArUco boards in any print.
+enum class LaboratoryFamily { Usual, Calm, Brisk, Dim, Memory, Clutter, Squares };
+inline constexpr std::array<std::string_view, 7> kLaboratoryFamilies = {"usual",  "calm",    "brisk",  "dim",
+                                                                        "memory", "clutter", "squares"};
 
 // `exact`: a session without the usual errors of board size and lens.
 Scenario drawLaboratory(LaboratoryFamily family, int number, bool exact);
