@@ -101,16 +101,6 @@ BoardEdges::BoardEdges(const Board& board, const TagPrint& print)
   }
 }
 
-std::vector<TagPrint> markerPrints(const Board& board) {
-  std::vector<TagPrint> prints = {TagPrint{}};
-  for (const bool first_is_bright : {false, true})
-    for (const std::string& markers : markerNames())
-      if (board.rows * board.cols / 2 <= markerCount(markers) &&
-          (first_is_bright || markers != kUsualMarkers))
-        prints.push_back({.markers = markers, .first_is_bright = first_is_bright});
-  return prints;
-}
-
 std::shared_ptr<const BoardEdges> edgesOf(const Board& board, const TagPrint& print) {
   struct Kept {
     Board board;

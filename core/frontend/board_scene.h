@@ -88,9 +88,6 @@ struct BoardEdges {
 
   BoardEdges(const Board& board, const TagPrint& print);
 };
-// Prints of a ChArUco board that are possible, the most usual first.
-std::vector<TagPrint> markerPrints(const Board& board);
-
 // The same for several scenes: the tables of the last boards are kept.
 std::shared_ptr<const BoardEdges> edgesOf(const Board& board, const TagPrint& print);
 

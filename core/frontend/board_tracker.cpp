@@ -150,14 +150,9 @@ void BoardTracker::processSlot(const WindowSlot& slot) {
     observations_.narrowest_px = std::max(observations_.narrowest_px, search.narrowest_px);
   if (search.extent.rows.lines > 0) countWhole(search.extent.rows.lines, observations_.extent.rows);
   if (search.extent.cols.lines > 0) countWhole(search.extent.cols.lines, observations_.extent.cols);
-  // Trying all prints takes long. A few windows show whether one of them is the board's.
-  constexpr int kMaxOtherPatterns = 8;
-  if (search.outcome == WindowOutcome::OtherPattern) {
-    if (++other_patterns_ >= kMaxOtherPatterns) scene_.print_known = true;
-    if (search.numbers) {
-      const auto [first, last] = numbers_.value_or(*search.numbers);
-      numbers_ = {std::min(first, search.numbers->first), std::max(last, search.numbers->second)};
-    }
+  if (search.numbers && !scene_.print_known) {
+    const auto [first, last] = numbers_.value_or(*search.numbers);
+    numbers_ = {std::min(first, search.numbers->first), std::max(last, search.numbers->second)};
   }
   if (search.motion) {
     search_interval_s_ = options_.detection.search_interval_s;

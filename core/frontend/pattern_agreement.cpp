@@ -281,16 +281,17 @@ PrintMatch matchPrint(const BoardMotion& laid, const std::vector<Eigen::Matrix3d
     }
   };
   consider(scene.edges);
-  if (best.matches || scene.print_known) return best;
-  if (scene.board.type != BoardType::AprilGrid) {
-    for (const TagPrint& print : markerPrints(scene.board))
-      if (const auto edges = edgesOf(scene.board, print); edges != scene.edges) consider(edges);
-    return best;
-  }
+  if (best.matches) return best;
+  // Blurred edges contradict more often. Then the numbers decide.
   const std::optional<TagReading> reading = readTags(crossings, scene.board);
   if (!reading) return best;
-  consider(edgesOf(scene.board, reading->print));
-  if (!best.matches) best.numbers = {reading->smallest, reading->largest};
+  const std::shared_ptr<const BoardEdges> edges =
+      reading->print == scene.edges->print ? scene.edges : edgesOf(scene.board, reading->print);
+  if (scene.print_known && edges != scene.edges) return best;
+  consider(edges);
+  best.matches = best.matches || (best.edges == edges && reading->areOf(scene.board));
+  if (!best.matches && scene.board.type == BoardType::AprilGrid)
+    best.numbers = {reading->smallest, reading->largest};
   return best;
 }
 

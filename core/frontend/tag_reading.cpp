@@ -3,118 +3,149 @@
 #include "core/geometry/marker_bits.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <utility>
 
 namespace evical {
 namespace {
 
 constexpr int kTurns = 4;
-constexpr auto kSide = static_cast<std::size_t>(kTagSide_bits);
 
-// Crossings at the boundaries between the bits of one tag, its border included, by the direction of the
-// paper.
-class BitEdges {
+// Boundaries between the bits of a tag, its border included: lines across x, then across y, each with its
+// places.
+class Boundaries {
  public:
-  // `place` in bits, from the tag's first bit.
-  void add(const Eigen::Vector2d& place, double tolerance, const BoardCrossing& crossing) {
-    addAt(0, place.x(), place.y(), tolerance, crossing.along_x);
-    addAt(1, place.y(), place.x(), tolerance, crossing.along_y);
-  }
+  explicit Boundaries(int side) : side_(side) {}
 
-  int count() const { return count_; }
-
-  // Crossings that bits explain, without those that contradict them. `isBright` takes row and column.
-  template <typename IsBright>
-  int agreementWith(const IsBright& isBright) const {
-    int sum = 0;
-    for (std::size_t along = 0; along < kSide; ++along) {
-      for (std::size_t line = 0; line <= kSide; ++line) {
-        for (const std::size_t axis : {0UL, 1UL}) {
-          const auto bright = [&](std::size_t across) {
-            return axis == 0 ? isBright(along, across) : isBright(across, along);
-          };
-          const bool before = line > 0 && bright(line - 1), after = line < kSide && bright(line);
-          const auto& [plus, minus] = crossings_[axis][line][along];
-          sum += before == after ? -plus - minus : (after ? plus - minus : minus - plus);
-        }
-      }
-    }
-    return sum;
+  int side() const { return side_; }
+  std::size_t count() const { return static_cast<std::size_t>(2 * side_ * (side_ + 1)); }
+  std::size_t at(int axis, int line, int along) const {
+    return static_cast<std::size_t>((axis * (side_ + 1) + line) * side_ + along);
   }
 
  private:
-  void addAt(std::size_t axis, double across, double along, double tolerance, int direction) {
-    const double line = std::round(across);
-    if (direction < 0 || std::abs(across - line) > tolerance || line < 0.0 || line > kTagSide_bits ||
-        along < 0.0 || along >= kTagSide_bits)
-      return;
-    ++crossings_[axis][static_cast<std::size_t>(line)][static_cast<std::size_t>(along)]
-                [static_cast<std::size_t>(direction & 1)];
-    ++count_;
-  }
-
-  // By axis across, boundary, place along it, and direction of the paper.
-  std::array<std::array<std::array<std::array<int, 2>, kSide>, kSide + 1>, 2> crossings_ = {};
-  int count_ = 0;
+  int side_;
 };
 
-// Agreement of each square of the board with each tag in each rotation.
-class TagScores {
- public:
-  TagScores(const std::vector<BoardCrossing>& crossings, const Board& board, int border_bits)
-      : tags_(firstTags(kTagFamilySize)), edges_(static_cast<std::size_t>(board.rows * board.cols)) {
-    const double bit_m = board.tag_size_m / (kTagSide_bits + 2 * border_bits);
-    for (const BoardCrossing& crossing : crossings) {
-      const Eigen::Vector2d square = (crossing.at_m / board.spacing_m).array().floor();
-      if (square.minCoeff() < 0.0 || square.x() >= board.cols || square.y() >= board.rows) continue;
-      const Eigen::Vector2d place =
-          ((crossing.at_m - board.spacing_m * square) / bit_m).array() - border_bits;
-      edges_[static_cast<std::size_t>(square.y() * board.cols + square.x())].add(
-          place, std::min(crossing.tolerance_m / bit_m, kNearest), crossing);
-    }
-    scores_.reserve(edges_.size() * tags_.size() * kTurns);
-    for (const BitEdges& edges : edges_) {
-      count_ += edges.count();
-      for (const TagBits& tag : tags_)
-        for (int turn = 0; turn < kTurns; ++turn) scores_.push_back(scoreOf(edges, tag, turn));
+// By boundary: 1 if the paper is after it, -1 if before, 0 without an edge.
+std::vector<std::int8_t> edgesOf(const PatternBits& bits, const Boundaries& boundaries) {
+  const int side = boundaries.side();
+  std::vector<std::int8_t> edges(boundaries.count());
+  for (int axis = 0; axis < 2; ++axis) {
+    for (int along = 0; along < side; ++along) {
+      const auto isBright = [&](int across) {
+        if (across < 0 || across >= side) return false;
+        const auto a = static_cast<std::size_t>(across), b = static_cast<std::size_t>(along);
+        return axis == 0 ? bits[b][a] : bits[a][b];
+      };
+      for (int line = 0; line <= side; ++line)
+        edges[boundaries.at(axis, line, along)] =
+            static_cast<std::int8_t>(static_cast<int>(isBright(line)) - static_cast<int>(isBright(line - 1)));
     }
   }
+  return edges;
+}
 
+// Crossings at the boundaries of one square's bits: with the paper after them minus before, and all.
+struct SquareCrossings {
+  std::vector<int> after, all;
+  int count = 0;
+
+  // Crossings that a tag explains, without those that contradict it.
+  int agreementWith(const std::vector<std::int8_t>& edges) const {
+    int sum = 0;
+    for (std::size_t k = 0; k < edges.size(); ++k) sum += edges[k] != 0 ? edges[k] * after[k] : -all[k];
+    return sum;
+  }
+};
+
+// Tags of one family with one width of border, that may be on the board.
+struct TagFamily {
+  TagPrint print;
+  std::vector<PatternBits> tags;
+};
+
+std::vector<TagFamily> familiesOf(const Board& board) {
+  std::vector<TagFamily> families;
+  if (board.type == BoardType::AprilGrid) {
+    for (const int border_bits : {2, 1})
+      families.push_back({{.border_bits = border_bits}, firstTags(kTagFamilySize)});
+    return families;
+  }
+  for (const std::string& markers : markerNames())
+    families.push_back({{.markers = markers},
+                        firstMarkers(markers, std::min(board.rows * board.cols, markerCount(markers)))});
+  return families;
+}
+
+// Agreement of each square of the board with each tag of a family in each rotation.
+class TagScores {
+ public:
+  TagScores(const std::vector<BoardCrossing>& crossings, const Board& board, const TagFamily& family)
+      : boundaries_(static_cast<int>(family.tags.front().size())),
+        tags_(static_cast<int>(family.tags.size())),
+        squares_(static_cast<std::size_t>(board.rows * board.cols)) {
+    for (SquareCrossings& square : squares_) {
+      square.after.resize(boundaries_.count());
+      square.all.resize(boundaries_.count());
+    }
+    const int border_bits = board.type == BoardType::AprilGrid ? family.print.border_bits : 1;
+    for (const BoardCrossing& crossing : crossings) add(crossing, board, border_bits);
+    for (const PatternBits& tag : family.tags) {
+      for (int turn = 0; turn < kTurns; ++turn) {
+        const std::vector<std::int8_t> edges = edgesOf(turned(tag, turn), boundaries_);
+        for (const SquareCrossings& square : squares_) scores_.push_back(square.agreementWith(edges));
+      }
+    }
+    for (const SquareCrossings& square : squares_) count_ += square.count;
+  }
+
+  int tags() const { return tags_; }
   int count() const { return count_; }
   bool isInView(int square) const {
     constexpr int kFewest = 12;
-    return edges_[static_cast<std::size_t>(square)].count() >= kFewest;
+    return squares_[static_cast<std::size_t>(square)].count >= kFewest;
   }
   // `square` row by row from the top left, `turn` clockwise. 0 for a tag that does not exist.
   int of(int square, int tag, int turn) const {
-    if (tag < 0 || tag >= kTagFamilySize) return 0;
-    return scores_[(static_cast<std::size_t>(square) * tags_.size() + static_cast<std::size_t>(tag)) *
-                       kTurns +
-                   static_cast<std::size_t>(turn)];
+    if (tag < 0 || tag >= tags_) return 0;
+    return scores_[static_cast<std::size_t>(tag * kTurns + turn) * squares_.size() +
+                   static_cast<std::size_t>(square)];
   }
 
  private:
-  static constexpr double kNearest = 0.4;  // of a bit
-
-  static int scoreOf(const BitEdges& edges, const TagBits& tag, int turn) {
-    constexpr int kLast = kTagSide_bits - 1;
-    return edges.agreementWith([&](std::size_t y, std::size_t x) {
-      int row = static_cast<int>(y), col = static_cast<int>(x);
-      for (int k = 0; k < turn; ++k) {
-        const int before = row;
-        row = kLast - col;
-        col = before;
-      }
-      return tag.isBright(row, col);
-    });
+  void add(const BoardCrossing& crossing, const Board& board, int border_bits) {
+    constexpr double kNearest = 0.4;  // of a bit
+    const bool markers = board.type == BoardType::Charuco;
+    const double margin_m = markers ? 0.5 * (board.spacing_m - board.tag_size_m) : 0.0,
+                 bit_m = board.tag_size_m / (boundaries_.side() + 2 * border_bits);
+    const Eigen::Vector2d at_m = crossing.at_m.array() + (markers ? board.spacing_m : 0.0);
+    const Eigen::Vector2d square = (at_m / board.spacing_m).array().floor();
+    if (square.minCoeff() < 0.0 || square.x() >= board.cols || square.y() >= board.rows) return;
+    const Eigen::Vector2d place =
+        (at_m - board.spacing_m * square).array() / bit_m - margin_m / bit_m - border_bits;
+    SquareCrossings& crossings = squares_[static_cast<std::size_t>(square.y() * board.cols + square.x())];
+    for (int axis = 0; axis < 2; ++axis) {
+      const int direction = axis == 0 ? crossing.along_x : crossing.along_y;
+      const auto line = static_cast<int>(std::lround(place[axis])),
+                 along = static_cast<int>(std::floor(place[1 - axis]));
+      if (direction < 0 || line < 0 || line > boundaries_.side() || along < 0 ||
+          along >= boundaries_.side() ||
+          std::abs(place[axis] - line) > std::min(crossing.tolerance_m / bit_m, kNearest))
+        continue;
+      const std::size_t at = boundaries_.at(axis, line, along);
+      crossings.after[at] += direction % 2 == 0 ? 1 : -1;
+      ++crossings.all[at];
+      ++crossings.count;
+    }
   }
 
-  std::vector<TagBits> tags_;
-  std::vector<BitEdges> edges_;  // by square, row by row from the top left
+  Boundaries boundaries_;
+  int tags_, count_ = 0;
+  std::vector<SquareCrossings> squares_;  // row by row from the top left
   std::vector<int> scores_;
-  int count_ = 0;
 };
 
 // A way to number the squares of the board in its placement: by order, rotation of the tags, and that of the
@@ -128,29 +159,45 @@ struct Numbering {
   int square(int k) const { return squares[static_cast<std::size_t>(k)]; }
 };
 
-// Place, row by row from the top left, of a square with Kalibr's number on a board that is turned clockwise.
-int turnedSquare(const Board& board, int square, int turn) {
-  int col = square % board.cols, row = board.rows - 1 - square / board.cols;
-  if (turn >= 2) {
-    col = board.cols - 1 - col;
-    row = board.rows - 1 - row;
-  }
-  return turn % 2 == 0 ? row * board.cols + col : col * board.cols + board.rows - 1 - row;
+// Place, row by row from the top left, of a square on a board that is turned clockwise.
+int turnedSquare(const Board& board, BoardSquare square, int turn) {
+  if (turn >= 2) square = {board.rows - 1 - square.row, board.cols - 1 - square.col};
+  return turn % 2 == 0 ? square.row * board.cols + square.col
+                       : square.col * board.cols + board.rows - 1 - square.row;
 }
 
-std::vector<Numbering> numberingsOf(const Board& board, int border_bits) {
+// The prints of a family, with the squares of the tags in their order.
+std::vector<std::pair<TagPrint, std::vector<BoardSquare>>> printsOf(const Board& board, TagPrint print) {
+  std::vector<std::pair<TagPrint, std::vector<BoardSquare>>> prints;
+  if (board.type == BoardType::AprilGrid) {
+    for (const TagLayout& layout : distinctLayouts(board)) {
+      print.order = layout.order;
+      print.quarter_turns = (kTurns - layout.quarter_turns) % kTurns;
+      auto& squares = prints.emplace_back(print, std::vector<BoardSquare>()).second;
+      for (int k = 0; k < board.rows * board.cols; ++k) {
+        const int square = squareOf(board, layout.order, k);
+        squares.push_back({board.rows - 1 - square / board.cols, square % board.cols});
+      }
+    }
+    return prints;
+  }
+  for (const bool first_is_bright : {false, true}) {
+    print.first_is_bright = first_is_bright;
+    for (print.quarter_turns = 0; print.quarter_turns < kTurns; ++print.quarter_turns)
+      prints.emplace_back(print, charucoMarkers(board, first_is_bright));
+  }
+  return prints;
+}
+
+std::vector<Numbering> numberingsOf(const Board& board, const TagPrint& of_family) {
   std::vector<Numbering> numberings;
   const bool is_square = board.rows == board.cols;
-  for (const TagLayout& layout : distinctLayouts(board)) {
+  for (const auto& [print, squares] : printsOf(board, of_family)) {
     for (int turn = 0; turn < kTurns; turn += is_square ? 1 : 2) {
-      Numbering& numbering = numberings.emplace_back();
-      numbering.print.border_bits = border_bits;
-      numbering.print.order = layout.order;
-      numbering.print.quarter_turns = (kTurns - layout.quarter_turns) % kTurns;
-      numbering.turn = (numbering.print.quarter_turns + turn) % kTurns;
-      for (int k = 0; k < board.rows * board.cols; ++k) {
-        numbering.squares.push_back(turnedSquare(board, squareOf(board, layout.order, k), turn));
-      }
+      Numbering& numbering =
+          numberings.emplace_back(Numbering{print, (print.quarter_turns + turn) % kTurns, {}});
+      for (const BoardSquare& square : squares)
+        numbering.squares.push_back(turnedSquare(board, square, turn));
     }
   }
   return numberings;
@@ -161,7 +208,7 @@ class BestNumbers {
  public:
   // The board's placement may be off by some rows, so that its first tag does not exist.
   void tryAll(const TagScores& scores, const Numbering& numbering) {
-    for (int first = -numbering.count(); first < kTagFamilySize; ++first) {
+    for (int first = -numbering.count(); first < scores.tags(); ++first) {
       int value = 0;
       for (int k = 0; k < numbering.count(); ++k)
         value += scores.of(numbering.square(k), first + k, numbering.turn);
@@ -171,9 +218,9 @@ class BestNumbers {
   }
 
   std::optional<TagReading> reading() const {
-    constexpr double kMinAgreement = 0.4, kMinLead = 0.1;  // of the crossings at bits
-    const bool is_clear =
-        value_ > kMinAgreement * crossings_ && value_ - second_value_ > kMinLead * crossings_;
+    constexpr double kMinAgreement = 0.1;  // of the crossings at bits
+    constexpr double kLargestSecond = 0.7;
+    const bool is_clear = value_ > kMinAgreement * crossings_ && second_value_ < kLargestSecond * value_;
     return is_clear && best_.smallest >= 0 && best_.smallest <= best_.largest ? std::optional(best_)
                                                                               : std::nullopt;
   }
@@ -182,7 +229,7 @@ class BestNumbers {
   void keep(int value, const TagScores& scores, const Numbering& numbering, int first) {
     value_ = value;
     crossings_ = scores.count();
-    best_ = {numbering.print, kTagFamilySize, -1};
+    best_ = {numbering.print, scores.tags(), -1};
     for (int k = 0; k < numbering.count(); ++k) {
       if (!scores.isInView(numbering.square(k))) continue;
       best_.smallest = std::min(best_.smallest, first + k);
@@ -198,9 +245,9 @@ class BestNumbers {
 
 std::optional<TagReading> readTags(const std::vector<BoardCrossing>& crossings, const Board& board) {
   BestNumbers best;
-  for (const int border_bits : {2, 1}) {
-    const TagScores scores(crossings, board, border_bits);
-    for (const Numbering& numbering : numberingsOf(board, border_bits)) best.tryAll(scores, numbering);
+  for (const TagFamily& family : familiesOf(board)) {
+    const TagScores scores(crossings, board, family);
+    for (const Numbering& numbering : numberingsOf(board, family.print)) best.tryAll(scores, numbering);
   }
   return best.reading();
 }

@@ -47,6 +47,15 @@ cv::Ptr<cv::aruco::Dictionary> dictionaryOf(const std::string& name) {
 
 }  // namespace
 
+PatternBits turned(PatternBits bits, int quarter_turns) {
+  for (int turn = 0; turn < quarter_turns; ++turn) {
+    const PatternBits before = bits;
+    for (std::size_t y = 0; y < bits.size(); ++y)
+      for (std::size_t x = 0; x < bits.size(); ++x) bits[y][x] = before[bits.size() - 1 - x][y];
+  }
+  return bits;
+}
+
 const std::vector<std::string>& markerNames() {
   static const std::vector<std::string> names = {"4x4", "5x5", "6x6", "7x7", "original"};
   return names;
@@ -79,14 +88,16 @@ Eigen::Vector2d squareCorner_m(const Board& board, const BoardSquare& square) {
   return board.spacing_m * Eigen::Vector2d(square.col - 1, square.row - 1);
 }
 
-std::vector<TagBits> firstTags(int count) {
+std::vector<PatternBits> firstTags(int count) {
   const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag36h11_create(),
                                                                                 tag36h11_destroy);
-  std::vector<TagBits> tags(static_cast<std::size_t>(std::clamp(count, 0, static_cast<int>(family->ncodes))));
+  const PatternBits dark(kTagSide_bits, std::vector<bool>(kTagSide_bits));
+  std::vector<PatternBits> tags(
+      static_cast<std::size_t>(std::clamp(count, 0, static_cast<int>(family->ncodes))), dark);
   for (std::size_t id = 0; id < tags.size(); ++id)
     for (std::uint32_t bit = 0; bit < family->nbits; ++bit)  // coordinates include the border of 1 bit
-      tags[id].setBright(static_cast<int>(family->bit_y[bit]) - 1, static_cast<int>(family->bit_x[bit]) - 1,
-                         (family->codes[id] >> (family->nbits - 1 - bit) & 1) != 0);
+      tags[id][family->bit_y[bit] - 1][family->bit_x[bit] - 1] =
+          (family->codes[id] >> (family->nbits - 1 - bit) & 1) != 0;
   return tags;
 }
 

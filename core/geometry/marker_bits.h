@@ -3,7 +3,6 @@
 
 #include "core/geometry/board.h"
 
-#include <bitset>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@ namespace evical {
 
 // Bright bits of a square, row by row from the top left, without the border.
 using PatternBits = std::vector<std::vector<bool>>;
+PatternBits turned(PatternBits bits, int quarter_turns);  // clockwise
 
 inline constexpr const char* kUsualMarkers = "5x5";
 const std::vector<std::string>& markerNames();  // of dictionaries
@@ -38,19 +38,7 @@ Eigen::Vector2d squareCorner_m(const Board& board, const BoardSquare& square);
 inline constexpr int kTagSide_bits = 6;  // without the border
 inline constexpr int kTagFamilySize = 587;
 
-// Bright bits of a tag, row by row from its top left, without the border.
-class TagBits {
- public:
-  bool isBright(int row, int col) const { return bright_[place(row, col)]; }
-  void setBright(int row, int col, bool bright) { bright_[place(row, col)] = bright; }
-
- private:
-  static std::size_t place(int row, int col) { return static_cast<std::size_t>(row * kTagSide_bits + col); }
-
-  std::bitset<kTagSide_bits * kTagSide_bits> bright_;
-};
-
 // The first `count` tags by number; at most those of the family.
-std::vector<TagBits> firstTags(int count);
+std::vector<PatternBits> firstTags(int count);
 
 }  // namespace evical

@@ -44,27 +44,9 @@ Boxes checkerboard(const Board& board) {
   return boxes;
 }
 
-PatternBits bitsOf(const TagBits& tag) {
-  PatternBits bits;
-  for (int row = 0; row < kTagSide_bits; ++row) {
-    bits.emplace_back();
-    for (int col = 0; col < kTagSide_bits; ++col) bits.back().push_back(tag.isBright(row, col));
-  }
-  return bits;
-}
-
-PatternBits turned(PatternBits bits, int quarter_turns) {
-  for (int turn = 0; turn < quarter_turns; ++turn) {
-    const PatternBits before = bits;
-    for (std::size_t y = 0; y < bits.size(); ++y)
-      for (std::size_t x = 0; x < bits.size(); ++x) bits[y][x] = before[bits.size() - 1 - x][y];
-  }
-  return bits;
-}
-
 Boxes tagGrid(const Board& board, const TagPrint& print) {
   const int needed = board.first_tag + board.rows * board.cols;
-  const std::vector<TagBits> tags = firstTags(print.blank ? 0 : needed);
+  const std::vector<PatternBits> tags = firstTags(print.blank ? 0 : needed);
   if (!print.blank && needed > static_cast<int>(tags.size()))
     throw badInput("board", fmt::format("needs tags up to {}, but tag36h11 has {}", needed - 1, tags.size()),
                    "Use fewer rows or columns, or a smaller number of the first tag");
@@ -78,7 +60,7 @@ Boxes tagGrid(const Board& board, const TagPrint& print) {
     const int square = squareOf(board, print.order, k);
     const Eigen::Vector2d place(square % board.cols, board.rows - 1 - square / board.cols);
     const auto tag = static_cast<std::size_t>(board.first_tag + k);
-    const PatternBits bits = print.blank ? PatternBits() : turned(bitsOf(tags[tag]), print.quarter_turns);
+    const PatternBits bits = print.blank ? PatternBits() : turned(tags[tag], print.quarter_turns);
     paintTag(board.spacing_m * place, board.tag_size_m, print.border_bits, bits, boxes);
   }
   return boxes;

@@ -166,7 +166,10 @@ void checkBoardSeen(const BoardObservations& observations, const Board& board,
                               ? fmt::format("Rows of {} are visible, but no {} x {} board: check {} {}{}",
                                             pointsOf(board), board.rows, board.cols, whatToCheck(board),
                                             howTo(HowTo::EditBoard), visibleLines(observations, board))
-                              : "Check that the board is in view, in focus and moving, and check " +
+                              : std::string("Check that the board is in view, in focus and moving") +
+                                    (board.hasCircles() ? ", and check "
+                                                        : ", that its narrowest dark lines are 3 px wide in "
+                                                          "the image, and check ") +
                                     whatToCheck(board) + " " + howTo(HowTo::EditBoard) +
                                     "; look at the detections " + howTo(HowTo::LookAtDetections));
 }

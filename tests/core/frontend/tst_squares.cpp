@@ -146,7 +146,7 @@ void TestSquares::board_isFound_data() {
   row("aprilgrid, tags turned", BoardType::AprilGrid, 2, 3, kUsualMarkers);
   row("aprilgrid, numbered down", BoardType::AprilGrid, 2, 2, kUsualMarkers, TagOrder::RowsDown);
   row("charuco", BoardType::Charuco, 2, 0, kUsualMarkers);
-  row("charuco, 4x4 markers", BoardType::Charuco, 2, 0, "4x4");
+  row("charuco, 4x4 markers, turned", BoardType::Charuco, 2, 1, "4x4");
 }
 
 void TestSquares::board_isFound() {

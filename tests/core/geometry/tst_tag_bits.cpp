@@ -24,7 +24,7 @@ class TestTagBits : public QObject {
   void bits_areThoseOfTheFamilysPictures() {
     const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag36h11_create(),
                                                                                   tag36h11_destroy);
-    const std::vector<TagBits> tags = firstTags(static_cast<int>(family->ncodes));
+    const std::vector<PatternBits> tags = firstTags(static_cast<int>(family->ncodes));
     QCOMPARE(tags.size(), std::size_t{587});
     const int inner = (family->total_width - kTagSide_bits) / 2;
     for (const std::size_t id : {0, 1, 35, 586}) {
@@ -32,7 +32,7 @@ class TestTagBits : public QObject {
           apriltag_to_image(family.get(), static_cast<std::uint32_t>(id)), destroy);
       for (int row = 0; row < kTagSide_bits; ++row)
         for (int col = 0; col < kTagSide_bits; ++col)
-          QCOMPARE(tags[id].isBright(row, col),
+          QCOMPARE(tags[id][static_cast<std::size_t>(row)][static_cast<std::size_t>(col)],
                    picture->buf[(inner + row) * picture->stride + inner + col] != 0);
     }
   }
