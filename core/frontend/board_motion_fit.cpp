@@ -18,7 +18,9 @@ namespace {
 constexpr int kFlowTerms = 8;
 constexpr int kUnknowns = 3 * kFlowTerms + 1;  // shift, velocity, acceleration, radius offset
 constexpr double kSquare = 0.8;                // cosine
-constexpr double kEdgeMoves_px = 1.0;          // during the fit, of a board of squares
+// During the fit of a board of squares: how far edges move, and by how much cosines between motion and
+// normals change.
+constexpr double kEdgeMoves_px = 1.0, kTurns = 0.25;
 using NormalMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using NormalVector = Eigen::Matrix<double, kUnknowns, 1>;
 
@@ -81,12 +83,9 @@ struct OutlineMotion {
 
 // Bursts that may be near the circle's edge at any time of the fit.
 void gatherPoints(const BurstWindow& window, const OutlineMotion& moving, double half_window_s,
-                  double slack_px, const TrackingOptions& options, std::vector<FitPoint>& points) {
-  constexpr double kTurns = 0.25;  // during the fit
+                  double slack_px, double lead, std::vector<FitPoint>& points) {
   points.clear();
   const OutlineImage& outline = moving.outline;
-  const double lead = usefulLead(outline, moving.velocity, kTurns, options);
-  if (lead == 0.0) return;
   const double speed = moving.velocity.norm() + 0.5 * half_window_s * moving.acceleration.norm();
   const Eigen::Vector2d reach =
       outline.sensor_reach_px.array() + slack_px + speed * half_window_s / outline.scale();
@@ -197,9 +196,13 @@ std::optional<BoardMotion> fitBoardMotion(const BurstWindow& window, const Board
     for (const OutlineImage& outline : projectBoard(motion.ideal_from_board, scene)) {
       const OutlineMotion moving(outline, motion);
       std::vector<FitPoint>& near = points[static_cast<std::size_t>(outline.index)];
-      // Edges of squares are close to each other.
-      const double slack_px = outline.isStraight() ? first_gate_px + kEdgeMoves_px : 2.0 * first_gate_px;
-      if (iteration == 0) gatherPoints(window, moving, half_window_s, slack_px, options, near);
+      if (iteration == 0) {
+        // Edges of squares are close to each other. Single events determine their motion less well.
+        const bool few = !outline.isStraight() || scene.single_events;
+        const double slack_px = few ? 2.0 * first_gate_px : first_gate_px + kEdgeMoves_px;
+        const double lead = few ? NAN : usefulLead(outline, moving.velocity, kTurns, options);
+        if (lead != 0.0) gatherPoints(window, moving, half_window_s, slack_px, lead, near);
+      }
       std::array<SectorSums, kOutlineSectors> sectors;
       sumSectors(moving, near, motion, gate_px, options, sectors, equations);
       for (const SectorSums& sums : sectors) addSector(sums, motion.frame, equations);

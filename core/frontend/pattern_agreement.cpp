@@ -217,6 +217,22 @@ double weightOfAbsence(const LatticeEdges::Count& laid) {
 
 }  // namespace
 
+namespace {
+
+// Cosines between the motion of the board's middle and the normals of its edges across x and across y.
+Eigen::Array2d cosinesAcross(const BoardMotion& motion, const Board& board) {
+  const Eigen::Vector2d middle_m = board.corner_m() + 0.5 * board.extent_m();
+  const Eigen::Vector3d image = motion.ideal_from_board * middle_m.homogeneous();
+  const Eigen::Vector2d at = image.hnormalized(), velocity = motion.velocityAt(at);
+  const Eigen::Matrix2d px_per_m =
+      (motion.ideal_from_board.topLeftCorner<2, 2>() - at * motion.ideal_from_board.block<1, 2>(2, 0)) /
+      image.z();
+  const Eigen::Matrix2d normals = px_per_m.inverse();  // its rows
+  return (normals * velocity).array().abs() / normals.rowwise().norm().array() / (velocity.norm() + 1e-9);
+}
+
+}  // namespace
+
 SlideCheck checkSlide(const BoardMotion& laid, const BurstWindow& window, const BoardScene& scene,
                       double half_window_s) {
   constexpr double kAgrees = 0.005,
@@ -241,7 +257,10 @@ SlideCheck checkSlide(const BoardMotion& laid, const BurstWindow& window, const 
   };
   if (contradictedShare(best) <= kAgrees) return {};
   Eigen::Vector2d place_px = Eigen::Vector2d::Zero(), part_px = place_px;
-  for (const Eigen::Vector2d& axis : {Eigen::Vector2d(0.0, 1.0), Eigen::Vector2d(1.0, 0.0)}) {
+  const Eigen::Array2d cosines = cosinesAcross(laid, scene.board);
+  for (const Eigen::Index k : {1, 0}) {
+    if (cosines[k] > kMinCosine) continue;  // edges across hold the board
+    const Eigen::Vector2d axis = Eigen::Vector2d::Unit(k);
     std::array<Agreement, 2> beside;  // before and after
     for (int step = 0; step < kFarthest_px; ++step) {
       beside = {at(place_px - axis), at(place_px + axis)};
