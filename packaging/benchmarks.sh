@@ -2,6 +2,7 @@
 # Prints every figure of docs/accuracy.md: packaging/benchmarks.sh [GROUP...]. Without groups all run, for more than a night.
 #   accuracy       all scenarios of config/scenarios, seeds, circle centres, start times
 #   laboratories   random rigs, boards, lenses, light and motions, and single faults in them: an hour
+#   boards         boards of squares before event cameras: eight hours
 #   lenses         frame cameras and intrinsics; also real recordings, if EVICAL_DATA is set
 #   checks         single deviations from the session, several recordings of a rig, an old result against a new recording
 #   without-board  rooms, and logs of IMUs over time: three hours
@@ -11,7 +12,7 @@
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 
-groups=(accuracy laboratories lenses checks without-board speed)
+groups=(accuracy laboratories boards lenses checks without-board speed)
 [ "$#" -gt 0 ] || set -- "${groups[@]}"
 for group in "$@"; do
   if [[ " ${groups[*]} " != *" $group "* ]]; then
@@ -54,6 +55,14 @@ run_accuracy() {
 
 run_laboratories() {
   run laboratories --family all --seeds 40 --agreement --faults 8
+}
+
+run_boards() {
+  run boards --seeds 20 --part imu --part lens --part hybrid --part time
+  # Each with one condition that makes detection harder.
+  for family in dim noise few_events low_contrast half_in_view fast slow fisheye near far edges_behind squares_behind one_axis; do
+    run boards --seeds 5 --part "$family"
+  done
 }
 
 run_lenses() {

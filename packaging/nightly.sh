@@ -5,12 +5,12 @@
 #   sanitizers  packaging/sanitizers.sh
 #   fuzz        packaging/fuzz.sh, one hour over all targets
 #   tidy        clang-tidy on all sources
-#   accuracy laboratories lenses checks without-board speed    packaging/benchmarks.sh, with their targets
+#   accuracy laboratories boards lenses checks without-board speed    packaging/benchmarks.sh, with their targets
 # A failed step does not stop the others. Output is in build/nightly/STEP.log; the exit code is 1 if a step has failed.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 
-steps=(gcc debug sanitizers fuzz tidy accuracy laboratories lenses checks without-board speed)
+steps=(gcc debug sanitizers fuzz tidy accuracy laboratories boards lenses checks without-board speed)
 [ "$#" -gt 0 ] || set -- "${steps[@]}"
 for step in "$@"; do
   if [[ " ${steps[*]} " != *" $step "* ]]; then
