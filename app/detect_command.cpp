@@ -64,12 +64,14 @@ void printOutcome(const BoardObservations& camera, bool has_lens) {
     if (counts[k] > 0) print("  {:6} {}\n", counts[k], windowOutcomeName(static_cast<WindowOutcome>(k)));
   }
   const auto countOf = [&](WindowOutcome outcome) { return counts[static_cast<std::size_t>(outcome)]; };
-  if (camera.kind == CameraKind::Events && !has_lens &&
-      countOf(WindowOutcome::Partial) > countOf(WindowOutcome::Complete))
+  if (camera.kind != CameraKind::Events || has_lens) return;
+  const bool other_tags = countOf(WindowOutcome::OtherPattern) > countOf(WindowOutcome::Complete);
+  if (other_tags || countOf(WindowOutcome::Partial) > countOf(WindowOutcome::Complete))
     print(
-        "  Without intrinsics, lens distortion hides points near the border of the image. `evical "
-        "calibrate` "
-        "calibrates the lens first, and then finds more of them.\n");
+        "  Without intrinsics, lens distortion {}. `evical intrinsics` and `evical calibrate` calibrate the "
+        "lens first, and then find the board more often.\n",
+        other_tags ? "bends the board, and its tags may seem to be others"
+                   : "hides points near the border of the image");
 }
 
 void detectIn(const Session& session, const std::filesystem::path& output, const DetectArguments& arguments,

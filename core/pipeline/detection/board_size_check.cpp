@@ -61,6 +61,12 @@ std::string whatToCheck(const Board& board) {
   return board.hasTags() ? "type, rows, columns and tags" : "type, rows and columns";
 }
 
+// Keys that place the board in its lattice: the tags of a board that is given with others can be a part of
+// it.
+std::string numbersOf(const Board& board) {
+  return board.type == BoardType::AprilGrid ? "rows, columns and first_tag" : "rows and columns";
+}
+
 std::string beyondText(const AxisCheck& axis, const Board& board) {
   return fmt::format("{} of the same lattice are visible beyond its first or last {} in {:.0f} % of {} views",
                      pointsOf(board), axis.line, 100.0 * axis.ends.beyond_seen / axis.ends.beyond_in_view,
@@ -212,7 +218,7 @@ void checkBoardSize(const BoardObservations& observations, const Board& board, c
                                       : larger          ? "larger than"
                                                         : "smaller than",
                                       board.rows, board.cols, text),
-                          "Check rows and columns " + howTo(HowTo::EditBoard) +
+                          "Check " + numbersOf(board) + " " + howTo(HowTo::EditBoard) +
                               (larger && smaller && board.rows != board.cols
                                    ? fmt::format(": are they exchanged ({} and {})?", board.cols, board.rows)
                                    : visibleLines(observations, board)));
@@ -228,7 +234,7 @@ std::optional<RecordingFault> unseenCircles(const BoardObservations& observation
       observations.camera, FaultKind::BoardSize, 0.0,
       fmt::format("{}: {} of the board's {} {} were not seen in any of {} views: check its {}",
                   observations.camera, never, board.pointCount(), board.hasCircles() ? "circles" : "points",
-                  observations.views.size(), board.hasPattern() ? "rows and columns" : "points_m")};
+                  observations.views.size(), board.hasPattern() ? numbersOf(board) : "points_m")};
 }
 
 const char* measurementsOf(CameraKind kind) {

@@ -55,13 +55,19 @@ void checkedAt(const YamlNode& map, const Check& check) {
 }
 
 // Spacing; for an AprilGrid also in Kalibr's form: the gap between two tags relative to the tag size.
-double readSpacing_m(const YamlNode& map, double tag_size_m) {
+double readSpacing_m(const YamlNode& map, const Board& board) {
   const auto share = map.find("tag_spacing"), spacing = map.find("spacing_m");
   if (share && spacing)
     throw share->error("duplicates spacing_m",
                        "Keep spacing_m (from one tag to the next) or tag_spacing (gap between two tags, "
                        "relative to tag_size_m)");
-  return share ? (1.0 + share->real(1e-3, 100.0, "")) * tag_size_m : map["spacing_m"].real(1e-4, 10.0, "m");
+  if (board.type == BoardType::AprilGrid && !share && !spacing)
+    throw map.error(
+        "has neither spacing_m nor tag_spacing",
+        "Add spacing_m (from one tag to the next), or tag_spacing (gap between two tags, relative to "
+        "tag_size_m), as in Kalibr's target file");
+  return share ? (1.0 + share->real(1e-3, 100.0, "")) * board.tag_size_m
+               : map["spacing_m"].real(1e-4, 10.0, "m");
 }
 
 // Points in a file relative to the session, or in the session.
@@ -105,7 +111,7 @@ Board readBoard(const YamlNode& map, const std::optional<MeasuredLength>& measur
   board.cols = map["cols"].integer(1, 100);
   if (board.hasTags()) board.tag_size_m = map["tag_size_m"].real(1e-4, 10.0, "m");
   if (const auto node = map.find("first_tag")) board.first_tag = node->integer(0, kMaxTag);
-  board.spacing_m = measured ? measured->spacing_m() : readSpacing_m(map, board.tag_size_m);
+  board.spacing_m = measured ? measured->spacing_m() : readSpacing_m(map, board);
   board.radius_m = board.hasCircles() ? map["radius_m"].real(1e-5, 10.0, "m") : 0.0;
   if (const auto node = map.find("circles"))
     board.circles = static_cast<CircleShade>(node->choice({"dark", "bright"}));

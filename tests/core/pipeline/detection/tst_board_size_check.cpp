@@ -117,7 +117,10 @@ void TestBoardSizeCheck::circlesNeverSeen_areWorthAWarning() {
   QVERIFY(!unseenCircles(observe(board, 11, 4, {}), board));
   const auto fault = unseenCircles(observe(board, 10, 4, {}), board);
   QVERIFY(fault);
-  VERIFY_SAYS(fault->text, "4 of the board's 44 circles.*any of 800 views");
+  VERIFY_SAYS(fault->text, "4 of the board's 44 circles.*any of 800 views: check its rows and columns");
+  Board tags = board;
+  tags.type = BoardType::AprilGrid;
+  VERIFY_SAYS(unseenCircles(observe(tags, 10, 4, {}), tags)->text, "check its rows, columns and first_tag");
 }
 
 }  // namespace

@@ -202,6 +202,8 @@ class TestSession : public QObject {
         << "radius_m";
     QTest::newRow("no tag size") << "type: aprilgrid, rows: 6, cols: 5, spacing_m: 0.1"
                                  << "tag_size_m";
+    QTest::newRow("no spacing") << "type: aprilgrid, rows: 6, cols: 5, tag_size_m: 0.08"
+                                << "neither spacing_m nor tag_spacing";
     QTest::newRow("twice") << "type: aprilgrid, rows: 6, cols: 5, tag_size_m: 0.08, tag_spacing: 0.25, "
                               "spacing_m: 0.1"
                            << "duplicates spacing_m";
