@@ -145,6 +145,12 @@ const std::vector<Family>& families() {
          s.scene.clutter_round_share = 0.0;
        }},
       {"squares_behind", [](Scenario& s) { s.scene.clutter_squares_px = 18.0; }},
+      {"glossy",
+       [](Scenario& s) {
+         // Reflections of a lamp as bright as the paper, over a large part of the board.
+         s.scene.gloss.strength = 1.0;
+         s.scene.gloss.spread_rad = 8.0 * kRadPerDeg;
+       }},
       {"one_axis",
        [](Scenario& s) {
          s.motion.angle_amplitude_rad = kRadPerDeg * Eigen::Vector3d(0.0, 15.0, 0.0);
