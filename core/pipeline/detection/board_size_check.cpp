@@ -61,8 +61,7 @@ std::string whatToCheck(const Board& board) {
   return board.hasTags() ? "type, rows, columns and tags" : "type, rows and columns";
 }
 
-// Keys that place the board in its lattice: the tags of a board that is given with others can be a part of
-// it.
+// Keys that state which part of the visible lattice is the board: a wrong first_tag moves it by some rows.
 std::string numbersOf(const Board& board) {
   return board.type == BoardType::AprilGrid ? "rows, columns and first_tag" : "rows and columns";
 }
