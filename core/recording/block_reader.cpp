@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace evical {
@@ -60,8 +61,7 @@ bool BlockReader::read(Packet& packet) {
 bool BlockReader::decodeBlock() {
   const std::size_t left = bytes_.size();
   bytes_.resize(left + kReadBlock_bytes);
-  file_.read(bytes_.data() + left, static_cast<std::streamsize>(kReadBlock_bytes));
-  const auto got = static_cast<std::size_t>(file_.gcount());
+  const std::size_t got = readBlock(bytes_.data() + left);
   bytes_.resize(left + got);
   position_ += got;
   if (got == 0) {
@@ -72,6 +72,22 @@ bool BlockReader::decodeBlock() {
   handed_out_ = 0;
   const std::size_t used = decoder_->decode(bytes_, position_ - bytes_.size(), decoded_);
   bytes_.erase(0, used);
+  return true;
+}
+
+// What there is, up to a block; 0 at the end.
+std::size_t BlockReader::readBlock(char* bytes) {
+  file_.read(bytes, static_cast<std::streamsize>(kReadBlock_bytes));
+  if (file_.gcount() == 0 && growth_ && growth_->waitFor(position_ + 1) > position_) {
+    file_.clear();
+    file_.seekg(static_cast<std::streamoff>(position_));
+    file_.read(bytes, static_cast<std::streamsize>(kReadBlock_bytes));
+  }
+  return static_cast<std::size_t>(file_.gcount());
+}
+
+bool BlockReader::follow(const std::shared_ptr<Growth>& growth) {
+  growth_ = growth;
   return true;
 }
 
@@ -210,6 +226,21 @@ RandomAccessFile::RandomAccessFile(const std::filesystem::path& path) {
   file_.open(path, std::ios::binary | std::ios::ate);
   if (!file_) throw badInput(path.string(), "the file cannot be opened", "Check its permissions");
   size_ = static_cast<std::uint64_t>(file_.tellg());
+}
+
+bool RandomAccessFile::reaches(std::uint64_t bytes) {
+  if (bytes > size_ && growth_ && bytes - size_ <= kLargestAwaited_bytes) look(bytes);
+  return bytes <= size_;
+}
+
+void RandomAccessFile::awaitEnd() {
+  if (growth_) look(std::numeric_limits<std::uint64_t>::max());
+}
+
+// Bytes that were read may have changed: some formats complete their header at the end.
+void RandomAccessFile::look(std::uint64_t bytes) {
+  size_ = growth_->waitFor(bytes);
+  block_.clear();
 }
 
 bool RandomAccessFile::read(std::uint64_t position, std::uint64_t count, std::string_view& bytes) {

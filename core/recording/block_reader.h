@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/recording/block_decoder.h"
+#include "core/recording/live/growth.h"
 #include "core/recording/recording_reader.h"
 
 #include "core/data/event.h"
@@ -16,6 +17,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace evical {
@@ -34,12 +36,14 @@ class BlockReader : public RecordingReader {
   const std::vector<StreamInfo>& streams() const override { return format_.streams; }
   void select(const std::vector<std::size_t>& streams) override;
   bool read(Packet& packet) override;
+  bool follow(const std::shared_ptr<Growth>& growth) override;
   double fractionRead() const override;
   const std::vector<RecordingFault>& faults() const override { return faults_; }
   std::string format() const override { return format_.name; }
 
  private:
   bool decodeBlock();
+  std::size_t readBlock(char* bytes);
   bool handOut(Packet& packet);
   bool handOutSamples(Packet& packet);
   bool handOutFrames(Packet& packet);
@@ -50,6 +54,7 @@ class BlockReader : public RecordingReader {
   BlockFormat format_;
   std::unique_ptr<BlockDecoder> decoder_;
   std::ifstream file_;
+  std::shared_ptr<Growth> growth_;
   std::uint64_t file_size_ = 0, position_ = 0;  // of bytes_'s end in the file
   std::string bytes_;                           // read, not yet decoded
   std::vector<Event> decoded_;
@@ -89,13 +94,24 @@ class RandomAccessFile {
   // Throws CalibrationError (BadInput) if the file cannot be opened.
   explicit RandomAccessFile(const std::filesystem::path& path);
 
-  std::uint64_t size() const { return size_; }  // at opening
+  // At opening; of a file that grows, when it was last looked at.
+  std::uint64_t size() const { return size_; }
+
+  void follow(std::shared_ptr<Growth> growth) { growth_ = std::move(growth); }
+  // Whether the file has so many bytes. Waits for them in a file that grows, unless they are implausibly
+  // many.
+  bool reaches(std::uint64_t bytes);
+  // Waits until a file that grows has ended.
+  void awaitEnd();
 
   // Bytes, valid until the next call; false unless all of them exist.
   bool read(std::uint64_t position, std::uint64_t count, std::string_view& bytes);
 
  private:
+  void look(std::uint64_t bytes);
+
   std::ifstream file_;
+  std::shared_ptr<Growth> growth_;
   std::uint64_t size_ = 0;
   std::string block_;
   std::uint64_t block_position_ = 0;

@@ -53,9 +53,9 @@ std::unique_ptr<RecordingWriter> createLz4Aedat4(const std::filesystem::path& pa
 
 // One line per format; everything that writes recordings uses this table.
 constexpr RecordingFormat kFormats[] = {
-    {"bag", ".bag", "ROS 1 bag", createPlainBag, true},
-    {"mcap", ".mcap", "ROS 2 recording in MCAP, zstd", createPackedMcap, true},
-    {"aedat4", ".aedat4", "iniVation AEDAT4", createLz4Aedat4},
+    {"bag", ".bag", "ROS 1 bag", createPlainBag, true, false, true},
+    {"mcap", ".mcap", "ROS 2 recording in MCAP, zstd", createPackedMcap, true, false, true},
+    {"aedat4", ".aedat4", "iniVation AEDAT4", createLz4Aedat4, false, false, true},
     {"dsec", ".h5", "HDF5 in DSEC's layout, IMU samples in /imu", createDsec},
     {"raw", ".raw", "Prophesee RAW, EVT 3.0, of one camera", createRaw, false, true},
     {"dat", ".dat", "Prophesee DAT of one camera", createDat, false, true},
@@ -73,6 +73,10 @@ std::string names() {
 
 void RecordingWriter::writeFrame(std::size_t /*stream*/, const Frame& /*frame*/) {
   throw badInput("recording", "this format cannot contain frames", "Choose bag or mcap");
+}
+
+void RecordingWriter::flush() {
+  throw badInput("recording", "this format cannot be written live", "Choose bag, mcap or aedat4");
 }
 
 std::span<const RecordingFormat> recordingFormats() {

@@ -44,6 +44,7 @@ class PlainNamesReader : public RecordingReader {
   }
 
   bool read(Packet& packet) override { return reader_->read(packet); }
+  bool follow(const std::shared_ptr<Growth>& growth) override { return reader_->follow(growth); }
   double fractionRead() const override { return reader_->fractionRead(); }
   std::string format() const override { return reader_->format(); }
 

@@ -15,6 +15,8 @@
 
 namespace evical {
 
+class Growth;
+
 class RecordingReader {
  public:
   virtual ~RecordingReader() = default;
@@ -30,6 +32,10 @@ class RecordingReader {
   // packet's storage. Packets are in the file's order: between packets, and between streams, time
   // may run backwards a little.
   virtual bool read(Packet& packet) = 0;
+
+  // For a file that is still being written: from now on read() waits at its end until there is more or the
+  // file has ended. False if this format must be complete.
+  virtual bool follow(const std::shared_ptr<Growth>& /*growth*/) { return false; }
 
   virtual double fractionRead() const = 0;  // of the file's bytes, 0..1
 

@@ -69,13 +69,29 @@ void PartFile::finish() {
   // Buffered bytes may fail on a full disk only here. Without the sync a power cut could leave the new name
   // without content, and the old content lost.
   if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail("cannot be written");
-  if (std::fclose(std::exchange(file_, nullptr)) != 0 ||
-      std::rename(part_path_.c_str(), path_.c_str()) != 0) {
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) {
+    const int reason = errno;
+    if (!published_) std::remove(part_path_.c_str());
+    errno = reason;
+    fail("cannot be written");
+  }
+  takeName();
+}
+
+void PartFile::publish() {
+  if (std::fflush(file_) != 0) fail("cannot be written");
+  takeName();
+}
+
+void PartFile::takeName() {
+  if (published_) return;
+  if (std::rename(part_path_.c_str(), path_.c_str()) != 0) {
     const int reason = errno;
     std::remove(part_path_.c_str());
     errno = reason;
     fail("cannot be written");
   }
+  published_ = true;
 }
 
 void PartFile::fail(const char* what) {
@@ -88,7 +104,7 @@ void PartFile::fail(const char* what) {
 void PartFile::close() {
   if (!file_) return;
   std::fclose(std::exchange(file_, nullptr));
-  std::remove(part_path_.c_str());
+  if (!published_) std::remove(part_path_.c_str());
 }
 
 }  // namespace evical

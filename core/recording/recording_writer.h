@@ -1,6 +1,6 @@
 // Writers of recordings that Evical and other programs can read. A file gets its name only when it is
-// complete: until finish() it has another name in the same folder; it is removed after errors or without
-// finish().
+// complete: until finish(), or flush(), it has another name in the same folder; it is removed after errors or
+// without finish().
 #pragma once
 
 #include "core/data/recording.h"
@@ -30,6 +30,9 @@ class RecordingWriter {
   // Encoded or not; all frames of a stream alike. Only if RecordingFormat::frames allows it.
   virtual void writeFrame(std::size_t stream, const Frame& frame);
   virtual void finish() = 0;
+  // Everything so far is in the file, which has its name from now on and remains without finish(). For
+  // recordings of live streams, if RecordingFormat::live allows it.
+  virtual void flush();
 
   // Time of 0 in the file, after the first write. Not 0 only for formats that cannot represent
   // the times.
@@ -89,6 +92,7 @@ struct RecordingFormat {
                                              const std::vector<StreamInfo>& streams);
   bool frames = false;      // also has frames
   bool one_camera = false;  // supports the events of one camera only
+  bool live = false;        // can be read while it is written
   bool isFolder() const { return *extension == '\0'; }
 };
 std::span<const RecordingFormat> recordingFormats();
@@ -127,17 +131,21 @@ class PartFile {
                  std::string_view bytes);  // replaces written bytes; append() continues at the end
   std::uint64_t size() const { return size_; }
   void finish();
+  // Gives the file its name already. It is not removed any more.
+  void publish();
 
   // Path of the content until then, for libraries that write it themselves.
   const std::filesystem::path& partPath() const { return part_path_; }
 
  private:
   [[noreturn]] void fail(const char* what);
+  void takeName();
   void close();
 
   std::filesystem::path path_, part_path_;
   std::FILE* file_ = nullptr;
   std::uint64_t size_ = 0;
+  bool published_ = false;
 };
 
 }  // namespace evical

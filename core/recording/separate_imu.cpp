@@ -147,6 +147,7 @@ class SeparateImuReader : public RecordingReader {
     }
   }
 
+  bool follow(const std::shared_ptr<Growth>& growth) override { return reader_->follow(growth); }
   double fractionRead() const override { return reader_->fractionRead(); }
   const std::vector<RecordingFault>& faults() const override { return reader_->faults(); }
   std::string format() const override { return reader_->format(); }

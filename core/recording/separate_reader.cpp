@@ -320,6 +320,10 @@ StopWaiting::StopWaiting(std::stop_token stop) : before_(stop_of_waits) {
   if (stop.stop_possible()) stop_of_waits = std::move(stop);
 }
 
+bool StopWaiting::isRequested() {
+  return stop_of_waits.stop_requested();
+}
+
 StopWaiting::~StopWaiting() {
   stop_of_waits = std::move(before_);
 }

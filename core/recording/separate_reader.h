@@ -30,6 +30,8 @@ class StopWaiting {
   StopWaiting(const StopWaiting&) = delete;
   StopWaiting& operator=(const StopWaiting&) = delete;
 
+  static bool isRequested();  // in this thread
+
  private:
   std::stop_token before_;
 };

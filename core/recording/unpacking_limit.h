@@ -38,15 +38,21 @@ class UnpackingLimit {
                    "If it is one, unpack it with the program that recorded it");
   }
   void restart() { unpacked_bytes_ = 0; }
+  // For files that are still being written.
+  void setFileBytes(std::uint64_t bytes) {
+    file_bytes_ = bytes;
+    max_bytes_ = std::max(max_bytes_, times_ * bytes);
+  }
 
  private:
   UnpackingLimit(std::string file, std::uint64_t file_bytes, std::uint64_t always_bytes, std::uint64_t times)
       : file_(std::move(file)),
         file_bytes_(file_bytes),
+        times_(times),
         max_bytes_(std::max(always_bytes, times * file_bytes)) {}
 
   std::string file_;
-  std::uint64_t file_bytes_, max_bytes_, unpacked_bytes_ = 0;
+  std::uint64_t file_bytes_, times_, max_bytes_, unpacked_bytes_ = 0;
 };
 
 }  // namespace evical

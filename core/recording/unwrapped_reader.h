@@ -39,6 +39,7 @@ class UnwrappedReader : public RecordingReader {
   const std::vector<StreamInfo>& streams() const override { return reader_->streams(); }
   void select(const std::vector<std::size_t>& streams) override { reader_->select(streams); }
   bool read(Packet& packet) override;
+  bool follow(const std::shared_ptr<Growth>& growth) override { return reader_->follow(growth); }
   double fractionRead() const override { return reader_->fractionRead(); }
   const std::vector<RecordingFault>& faults() const override;
   std::string format() const override { return reader_->format(); }

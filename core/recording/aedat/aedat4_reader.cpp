@@ -228,7 +228,7 @@ std::uint64_t Aedat4Reader::scanForPacket(std::uint64_t from) {
 bool Aedat4Reader::nextPacket(PacketHeader& header) {
   for (;;) {
     if (position_ == table_position_) return false;
-    const HeaderState state = readHeader(position_, header);
+    const HeaderState state = follows_ ? awaitHeader(header) : readHeader(position_, header);
     if (state == HeaderState::End) return false;
     if (state == HeaderState::Good) {
       position_ = header.end();
@@ -236,6 +236,30 @@ bool Aedat4Reader::nextPacket(PacketHeader& header) {
     }
     if (!skipDamage(header, state)) return false;
   }
+}
+
+// What is no packet is the table, or damage: the header says at the end where the table is.
+Aedat4Reader::HeaderState Aedat4Reader::awaitHeader(PacketHeader& header) {
+  file_.reaches(position_ + aedat::kPacketHeader_bytes + 4);
+  HeaderState state = readHeader(position_, header);
+  if (state == HeaderState::Cut && file_.reaches(header.end())) state = readHeader(position_, header);
+  limit_.setFileBytes(file_.size());
+  if (state == HeaderState::Good || state == HeaderState::End) return state;
+  file_.awaitEnd();
+  follows_ = false;
+  const std::int64_t table = readFileHeader().table_position;
+  if (table > 0 && static_cast<std::uint64_t>(table) <= file_.size())
+    table_position_ = static_cast<std::uint64_t>(table);
+  return position_ == table_position_ ? HeaderState::End : readHeader(position_, header);
+}
+
+bool Aedat4Reader::follow(const std::shared_ptr<Growth>& growth) {
+  follows_ = table_position_ == 0;
+  if (follows_) file_.follow(growth);
+  // The place of a table that is still to come is no fault.
+  if (follows_)
+    std::erase_if(faults_, [](const RecordingFault& fault) { return fault.kind == FaultKind::Truncated; });
+  return true;
 }
 
 void Aedat4Reader::resumeBehind(std::uint64_t position) {

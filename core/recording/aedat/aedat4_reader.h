@@ -24,6 +24,7 @@ class Aedat4Reader : public RecordingReader {
   const std::vector<StreamInfo>& streams() const override { return streams_; }
   void select(const std::vector<std::size_t>& streams) override;
   bool read(Packet& packet) override;
+  bool follow(const std::shared_ptr<Growth>& growth) override;
   double fractionRead() const override;
   const std::vector<RecordingFault>& faults() const override { return faults_; }
   std::string format() const override { return "aedat4"; }
@@ -53,6 +54,7 @@ class Aedat4Reader : public RecordingReader {
                   const std::map<std::int32_t, Listed>& listed);
   void takeTypeOfPackets(aedat::StreamDescription& stream, const Listed& listed);
   std::string typeOfPacket(std::uint64_t position);
+  HeaderState awaitHeader(PacketHeader& header);
   HeaderState readHeader(std::uint64_t position, PacketHeader& header);
   bool looksLikeData(std::uint64_t position, std::int32_t size);
   std::uint64_t scanForPacket(std::uint64_t from);
@@ -71,6 +73,7 @@ class Aedat4Reader : public RecordingReader {
   std::string path_;
   RandomAccessFile file_;
   UnpackingLimit limit_;
+  bool follows_ = false;
   std::uint64_t data_position_ = 0, position_ = 0;
   std::uint64_t table_position_ = 0;  // 0: absent or damaged
   aedat::Compression compression_ = aedat::Compression::None;

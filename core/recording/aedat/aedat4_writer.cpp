@@ -59,6 +59,11 @@ class Aedat4Writer : public RecordingWriter {
     file_.finish();
   }
 
+  void flush() override {
+    for (std::size_t i = 0; i < streams_.size(); ++i) flush(i);
+    file_.publish();
+  }
+
   std::vector<std::string> streamNames() const override { return read_names_; }
 
  private:

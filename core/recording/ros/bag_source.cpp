@@ -51,6 +51,11 @@ void BagSource::rewind() {
   chunk_ = {};
 }
 
+bool BagSource::follow(const std::shared_ptr<Growth>& growth) {
+  file_.follow(growth);
+  return true;
+}
+
 std::string BagSource::place() const {
   return fmt::format("in the chunk at byte {}", chunk_position_);
 }
@@ -84,18 +89,21 @@ void BagSource::listTopics() {
 
 BagSource::RecordState BagSource::readRecord(std::uint64_t position, FileRecord& record) {
   record = {};
+  file_.reaches(position + 4);
+  limit_.setFileBytes(file_.size());
   if (position >= file_.size()) return RecordState::End;
   std::string_view bytes;
   if (!file_.read(position, 4, bytes)) return RecordState::Damaged;
   const auto header_size = ByteCursor(bytes).number<std::uint32_t>();
   if (header_size > kLargestRecordHeader_bytes) return RecordState::Damaged;
+  file_.reaches(position + 8 + header_size);
   if (!file_.read(position + 4, std::uint64_t{header_size} + 4, bytes)) return RecordState::Damaged;
   header_bytes_ = bytes;  // reading the data changes the file's block
   ByteCursor cursor(header_bytes_);
   if (!rosbag::parseRecordHeader(cursor.take(header_size), record.header)) return RecordState::Damaged;
   record.data_size = cursor.number<std::uint32_t>();
   record.data_position = position + 8 + header_size;
-  return record.end() <= file_.size() ? RecordState::Whole : RecordState::Cut;
+  return file_.reaches(record.end()) ? RecordState::Whole : RecordState::Cut;
 }
 
 // Searches for a chunk's header from here on, also within data: packed data do not look like one by chance,

@@ -27,6 +27,7 @@ class BagSource : public MessageSource {
   void want(std::vector<bool> topics) override { wanted_ = std::move(topics); }
   bool next(SourceMessage& message) override;
   void rewind() override;
+  bool follow(const std::shared_ptr<Growth>& growth) override;
   std::string place() const override;
   double fractionRead() const override;
 

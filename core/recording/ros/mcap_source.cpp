@@ -66,6 +66,11 @@ void McapSource::goToBegin() {
   ended_ = false;
 }
 
+bool McapSource::follow(const std::shared_ptr<Growth>& growth) {
+  file_.follow(growth);
+  return true;
+}
+
 std::string McapSource::place() const {
   return fmt::format("in the record at byte {}", record_position_);
 }
@@ -254,6 +259,7 @@ bool McapSource::nextOfChunk(SourceMessage& message) {
 bool McapSource::nextRecord(SourceMessage& message) {
   Record record;
   record_position_ = position_;
+  file_.reaches(position_ + mcap::kRecordHead_bytes);
   if (!readHead(position_, record)) {
     ended_ = true;
     if (position_ < file_.size()) {
@@ -263,6 +269,8 @@ bool McapSource::nextRecord(SourceMessage& message) {
     }
     return false;
   }
+  if (record.size <= kLargestAwaited_bytes && isKnown(record.op)) file_.reaches(record.end());
+  limit_.setFileBytes(file_.size());
   if (record.size > file_.size() - record.content || !isKnown(record.op)) {
     skipDamage(record);
     return false;

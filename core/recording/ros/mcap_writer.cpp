@@ -52,11 +52,27 @@ void McapWriter::finish() {
   file_.finish();
 }
 
+void McapWriter::flush() {
+  flushEvents();
+  flushChunk();
+  file_.publish();
+}
+
+// All streams before the first message, so that readers know them; the type of frames follows from the first
+// one.
+void McapWriter::announce(std::size_t stream) {
+  if (channels_[stream].announced) return;
+  for (std::size_t i = 0; i < streamCount(); ++i) {
+    if (channels_[i].announced || (i != stream && info(i).type == StreamType::Frames)) continue;
+    channels_[i].announced = true;
+    chunk_ += schemaRecord(i) + channelRecord(i);
+  }
+}
+
 void McapWriter::appendMessage(std::size_t stream, std::uint32_t sequence, std::int64_t time_ns,
                                std::string_view message) {
+  announce(stream);
   Channel& channel = channels_[stream];
-  if (!channel.announced) chunk_ += schemaRecord(stream) + channelRecord(stream);
-  channel.announced = true;
   ++channel.messages;
   const auto time = static_cast<std::uint64_t>(time_ns);
   channel.index.emplace_back(time, chunk_.size());

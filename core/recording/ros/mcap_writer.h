@@ -19,6 +19,7 @@ class McapWriter : public ros::RosWriter {
              McapCompression compression);
 
   void finish() override;
+  void flush() override;
 
  private:
   // Channel of the stream of the same number; its id is also its schema's.
@@ -37,6 +38,7 @@ class McapWriter : public ros::RosWriter {
 
   void appendMessage(std::size_t stream, std::uint32_t sequence, std::int64_t time_ns,
                      std::string_view message) override;
+  void announce(std::size_t stream);
   void flushChunk();
   void appendIndexes(ChunkInfo& chunk);
   void appendSummary();

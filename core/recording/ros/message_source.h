@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,8 @@ class MessageSource {
   virtual void want(std::vector<bool> topics) = 0;
   virtual bool next(SourceMessage& message) = 0;  // false at the end
   virtual void rewind() = 0;
+  // As RecordingReader::follow.
+  virtual bool follow(const std::shared_ptr<Growth>& /*growth*/) { return false; }
   virtual std::string place() const = 0;  // of the last message, for people: "at byte 17"
   virtual double fractionRead() const = 0;
 };

@@ -122,6 +122,13 @@ bool RosReader::read(Packet& packet) {
   return false;
 }
 
+// A missing index is no fault of such a file.
+bool RosReader::follow(const std::shared_ptr<Growth>& growth) {
+  if (files_.size() != 1 || started_ || !source_->follow(growth)) return false;
+  topics_.dropFaults(FaultKind::NoIndex);
+  return true;
+}
+
 double RosReader::fractionRead() const {
   const double here = source_ ? source_->fractionRead() : started_ ? 1.0 : 0.0;
   return std::min(1.0, (static_cast<double>(file_) + here) / static_cast<double>(files_.size()));

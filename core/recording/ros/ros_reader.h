@@ -22,6 +22,7 @@ class RosReader : public RecordingReader {
   const std::vector<StreamInfo>& streams() const override { return topics_.streams(); }
   void select(const std::vector<std::size_t>& streams) override { topics_.select(path_, streams); }
   bool read(Packet& packet) override;
+  bool follow(const std::shared_ptr<Growth>& growth) override;
   double fractionRead() const override;
   const std::vector<RecordingFault>& faults() const override { return topics_.faults(); }
   std::string format() const override { return format_; }

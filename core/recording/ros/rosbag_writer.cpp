@@ -61,11 +61,27 @@ void RosbagWriter::finish() {
   file_.finish();
 }
 
+void RosbagWriter::flush() {
+  flushEvents();
+  flushChunk();
+  file_.publish();
+}
+
+// All streams before the first message, so that readers know them; the type of frames follows from the first
+// one.
+void RosbagWriter::announce(std::size_t stream) {
+  if (connections_[stream].announced) return;
+  for (std::size_t i = 0; i < streamCount(); ++i) {
+    if (connections_[i].announced || (i != stream && info(i).type == StreamType::Frames)) continue;
+    connections_[i].announced = true;
+    chunk_ += connectionRecord(i);
+  }
+}
+
 void RosbagWriter::appendMessage(std::size_t stream, std::uint32_t /*sequence*/, std::int64_t time_ns,
                                  std::string_view message) {
+  announce(stream);
   Connection& connection = connections_[stream];
-  if (!connection.announced) chunk_ += connectionRecord(stream);
-  connection.announced = true;
   connection.index.push_back({time_ns, static_cast<std::uint32_t>(chunk_.size())});
   chunk_ +=
       sized(opField(rosbag::Op::Message) + field("conn", numberBytes(static_cast<std::uint32_t>(stream))) +

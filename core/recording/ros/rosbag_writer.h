@@ -14,6 +14,7 @@ class RosbagWriter : public ros::RosWriter {
   RosbagWriter(const std::filesystem::path& path, const std::vector<StreamInfo>& streams, bool lz4);
 
   void finish() override;
+  void flush() override;
 
  private:
   struct IndexEntry {
@@ -34,6 +35,7 @@ class RosbagWriter : public ros::RosWriter {
 
   void appendMessage(std::size_t stream, std::uint32_t sequence, std::int64_t time_ns,
                      std::string_view message) override;
+  void announce(std::size_t stream);
   void flushChunk();
   void appendIndex(ChunkInfo& chunk);
   std::string bagHeader(std::uint64_t index_position) const;

@@ -52,6 +52,9 @@ class TopicStreams {
   const std::vector<RecordingFault>& faults() const { return faults_; }
   void addFault(const std::string& stream, FaultKind kind, const std::string& text);
   void dropFaultsFrom(std::size_t count) { faults_.resize(count); }
+  void dropFaults(FaultKind kind) {
+    std::erase_if(faults_, [&](const RecordingFault& fault) { return fault.kind == kind; });
+  }
 
  private:
   struct State {

@@ -105,13 +105,22 @@ std::size_t TextBytes::readUnpacked(char* bytes, std::size_t count) {
     const int more =
         gzread(file_.get(), bytes + got, static_cast<unsigned>(std::min(count - got, kMaxAtOnce)));
     if (more > 0) got += static_cast<std::size_t>(more);
+    if (growth_) limit_.setFileBytes(growth_->bytes());
     if (more > 0) limit_.add(static_cast<std::uint64_t>(more));
     int error = Z_OK;
     gzerror(file_.get(), &error);
     damaged_ = more < 0 || (error != Z_OK && error != Z_STREAM_END);
-    if (more <= 0) break;
+    if (more <= 0 && (got > 0 || damaged_ || !awaitMore())) break;
   }
   return got;
+}
+
+bool TextBytes::awaitMore() {
+  if (!growth_) return false;
+  const std::uint64_t read = position();
+  const std::uint64_t size = growth_->waitFor(read + 1);
+  gzclearerr(file_.get());
+  return size > read;
 }
 
 std::uint64_t TextBytes::position() const {

@@ -2,6 +2,7 @@
 // write it, becomes UTF-8, also without a byte order mark.
 #pragma once
 
+#include "core/recording/live/growth.h"
 #include "core/recording/unpacking_limit.h"
 
 #include <cstddef>
@@ -10,6 +11,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 struct gzFile_s;
 
@@ -28,6 +30,10 @@ class TextBytes {
   // Number of bytes read; 0 at the end, and if a packed file is damaged from here on. Throws CalibrationError
   // (BadInput) if it unpacks to more than a recording can.
   std::size_t read(char* bytes, std::size_t count);
+  // From now on read() returns what there is, and waits only if there is nothing yet.
+  void follow(std::shared_ptr<Growth> growth) { growth_ = std::move(growth); }
+  // A read would wait.
+  bool isAhead() const { return growth_ && !growth_->hasEnded() && growth_->bytes() <= position(); }
   bool isDamaged() const { return damaged_; }  // a packed file ended too early
 
   // Size of the file on the disk.
@@ -39,6 +45,7 @@ class TextBytes {
     void operator()(gzFile_s* file) const;
   };
   std::size_t readUnpacked(char* bytes, std::size_t count);
+  bool awaitMore();
   bool addUtf16();
 
   std::unique_ptr<gzFile_s, Closing> file_;
@@ -46,6 +53,7 @@ class TextBytes {
   std::string utf8_;    // converted, not yet read
   std::uint64_t size_ = 0;
   UnpackingLimit limit_;
+  std::shared_ptr<Growth> growth_;
   bool damaged_ = false;
 };
 

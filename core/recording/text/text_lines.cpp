@@ -40,16 +40,26 @@ bool TextLines::refill() {
   begin_ = 0;
   const std::size_t wanted = buffer_.size() - end_, got = file_.read(buffer_.data() + end_, wanted);
   end_ += got;
-  ended_ = got < wanted;
+  ended_ = follows_ ? got == 0 : got < wanted;
   return got > 0;
 }
 
+const char* TextLines::lineEnd() const {
+  return static_cast<const char*>(std::memchr(buffer_.data() + begin_, line_end_, end_ - begin_));
+}
+
+void TextLines::follow(const std::shared_ptr<Growth>& growth) {
+  file_.follow(growth);
+  follows_ = true;
+}
+
+bool TextLines::wouldWait() const {
+  return follows_ && lineEnd() == nullptr && file_.isAhead();
+}
+
 bool TextLines::next(std::string_view& line) {
-  const auto newline = [this] {
-    return static_cast<const char*>(std::memchr(buffer_.data() + begin_, line_end_, end_ - begin_));
-  };
-  const char* found = newline();
-  if (!found && refill()) found = newline();
+  const char* found = lineEnd();
+  while (!found && end_ - begin_ < buffer_.size() && refill()) found = lineEnd();
   if (begin_ == end_) return false;
   const char* const start = buffer_.data() + begin_;
   const std::size_t length = found ? static_cast<std::size_t>(found - start) : end_ - begin_;

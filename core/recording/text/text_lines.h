@@ -20,6 +20,9 @@ class TextLines {
   // Next line without its end, valid until the next call; false at the end of the file. A line longer than
   // the buffer is returned in pieces.
   bool next(std::string_view& line);
+  // For a file that is still being written: next() waits for whole lines.
+  void follow(const std::shared_ptr<Growth>& growth);
+  bool wouldWait() const;
 
   std::uint64_t number() const { return number_; }              // of the last line returned, from 1
   bool atEnd() const { return ended_ && begin_ == end_; }       // the last line was returned
@@ -29,12 +32,13 @@ class TextLines {
 
  private:
   bool refill();
+  const char* lineEnd() const;
 
   TextBytes file_;
   char line_end_ = '\n';
   std::string buffer_;
   std::size_t begin_ = 0, end_ = 0;  // unread part of the buffer
-  bool ended_ = false;
+  bool ended_ = false, follows_ = false;
   std::uint64_t number_ = 0;
 };
 

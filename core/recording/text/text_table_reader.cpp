@@ -204,7 +204,9 @@ void TextTableReader::fillEvents(Source& source, std::size_t stream, std::vector
   source.has_next_event = false;
   std::string_view line;
   Event event{};
-  while (source.lines.next(line)) {
+  for (;;) {
+    if (!events.empty() && source.lines.wouldWait()) return;
+    if (!source.lines.next(line)) break;
     if (!parseEvent(source, line, event)) {
       if (isNoRow(source, line)) continue;
       if (isOtherType(source))
@@ -230,6 +232,7 @@ void TextTableReader::fillImu(Source& source, std::size_t stream, std::vector<Ra
   std::string_view line;
   RawImuSample sample;
   while (samples.size() < kTextPacketSamples) {
+    if (!samples.empty() && source.lines.wouldWait()) return;
     if (!source.lines.next(line)) return finish(source, stream);
     if (parseImu(source, line, sample)) {
       addDay(source, sample.time_ns);
@@ -364,6 +367,13 @@ void TextTableReader::addBadLine(Source& source, std::size_t stream) {
   faults_.push_back(
       {streams_[stream].name, last ? FaultKind::Truncated : FaultKind::Corrupt, 0.0,
        fmt::format("Line {} is not \"{}\"; it is left out.", source.lines.number(), rowOf(source.columns))});
+}
+
+// Of one table. Several would be read by their times, each waiting for the others.
+bool TextTableReader::follow(const std::shared_ptr<Growth>& growth) {
+  if (sources_.size() != 1) return false;
+  sources_.front().lines.follow(growth);
+  return true;
 }
 
 double TextTableReader::fractionRead() const {

@@ -26,6 +26,7 @@ class TextTableReader : public RecordingReader {
   const std::vector<StreamInfo>& streams() const override { return streams_; }
   void select(const std::vector<std::size_t>& streams) override;
   bool read(Packet& packet) override;
+  bool follow(const std::shared_ptr<Growth>& growth) override;
   double fractionRead() const override;
   const std::vector<RecordingFault>& faults() const override { return faults_; }
   std::string format() const override { return format_; }
