@@ -27,6 +27,7 @@ void addIntrinsicsCommand(Command& app, int& exit_code);
 void addMaintainCommand(Command& app, int& exit_code);
 void addManualCommand(Command& app, int& exit_code);
 void addOptionsCommand(Command& app, int& exit_code);
+void addRecordCommand(Command& app, int& exit_code);
 void addRepeatCommand(Command& app, int& exit_code);
 void addSimulateCommand(Command& app, int& exit_code);
 

@@ -2,6 +2,7 @@
 #include "app/commands.h"
 #include "app/console.h"
 #include "app/output.h"
+#include "app/session_arguments.h"
 #include "core/base/error.h"
 #include "core/base/number.h"
 #include "core/recording/conversion.h"
@@ -9,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -18,25 +18,10 @@
 namespace evical {
 namespace {
 
-Resolution resolutionIn(const std::string& text) {
-  Resolution size_px;
-  const std::size_t cross = text.find('x');
-  const auto isSide = [](std::string_view side, int& length_px) {
-    const auto [end, error] = std::from_chars(side.data(), side.data() + side.size(), length_px);
-    return error == std::errc{} && end == side.data() + side.size() && length_px > 0 && length_px <= 65536;
-  };
-  const bool good = cross != std::string::npos &&
-                    isSide(std::string_view(text).substr(0, cross), size_px.width_px) &&
-                    isSide(std::string_view(text).substr(cross + 1), size_px.height_px);
-  if (!good) throw badInput(text, "is not a resolution", "Write it as 346x260");
-  return size_px;
-}
-
 void printSummary(const ConversionRequest& request, const ConversionSummary& made) {
   print("{}, {}{} in {} ({})\n", counted(made.events, "event"), counted(made.imu_samples, "IMU sample"),
         made.frames > 0 ? ", " + counted(made.frames, "frame") : "", request.output.string(), made.format);
-  for (const RecordingFault& fault : made.faults)
-    print("  {}: {}{}{}\n", nameOf(fault.kind), fault.stream, fault.stream.empty() ? "" : ": ", fault.text);
+  printFaults(made.faults);
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ void addCommands(Command& app, int& exit_code) {
   addCalibrateCommand(app, exit_code);
   addCheckCommand(app, exit_code);
   addMaintainCommand(app, exit_code);
+  addRecordCommand(app, exit_code);
   addRepeatCommand(app, exit_code);
   addBatchCommand(app, exit_code);
   addIntrinsicsCommand(app, exit_code);

@@ -11,6 +11,9 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <system_error>
+
 namespace evical {
 
 void addSessionArguments(Command& command, SessionArguments& arguments) {
@@ -67,6 +70,25 @@ void warnOfForeignRunData(const std::string& path) {
 NamedResult resultAt(const std::string& path) {
   warnOfForeignRunData(path);
   return readResultYaml(resultFileOf(path));
+}
+
+Resolution resolutionIn(const std::string& text) {
+  Resolution size_px;
+  const std::size_t cross = text.find('x');
+  const auto isSide = [](std::string_view side, int& length_px) {
+    const auto [end, error] = std::from_chars(side.data(), side.data() + side.size(), length_px);
+    return error == std::errc{} && end == side.data() + side.size() && length_px > 0 && length_px <= 65536;
+  };
+  const bool good = cross != std::string::npos &&
+                    isSide(std::string_view(text).substr(0, cross), size_px.width_px) &&
+                    isSide(std::string_view(text).substr(cross + 1), size_px.height_px);
+  if (!good) throw badInput(text, "is not a resolution", "Write it as 346x260");
+  return size_px;
+}
+
+void printFaults(const std::vector<RecordingFault>& faults) {
+  for (const RecordingFault& fault : faults)
+    print("  {}: {}{}{}\n", nameOf(fault.kind), fault.stream, fault.stream.empty() ? "" : ": ", fault.text);
 }
 
 }  // namespace evical

@@ -2,6 +2,7 @@
 // calibrate and detect; RESULT.
 #pragma once
 
+#include "core/data/recording.h"
 #include "core/pipeline/session/session.h"
 #include "core/report/result_yaml.h"
 
@@ -39,5 +40,10 @@ std::string tryText(const SessionArguments& arguments, const Repair& repair);
 
 // One folder per camera, for files that have the same names.
 std::vector<std::string> foldersOfCameras(const Session& session);
+
+// "346x260". Throws CalibrationError (BadInput).
+Resolution resolutionIn(const std::string& text);
+
+void printFaults(const std::vector<RecordingFault>& faults);
 
 }  // namespace evical

@@ -63,6 +63,27 @@ Outcome runProgramWithFileLimit(const QStringList& arguments, int blocks_of_1024
   return finished(process, 120);
 }
 
+Outcome runProgramOn(const QString& shell_command, const QStringList& arguments, int patience_s) {
+  QProcess process;
+  process.start("bash", QStringList{"-c", "(" + shell_command + ") | \"$@\"", "bash", kProgram} + arguments);
+  return finished(process, patience_s);
+}
+
+Outcome signalProgramOn(const QString& shell_command, const QStringList& arguments, int signal,
+                        int after_ms) {
+  QProcess sender, process;
+  sender.setStandardOutputProcess(&process);
+  sender.start("bash", {"-c", shell_command});
+  process.start(kProgram, arguments);
+  process.waitForStarted();
+  process.waitForFinished(after_ms);
+  if (const auto number = static_cast<pid_t>(process.processId()); number > 0) ::kill(number, signal);
+  const Outcome outcome = finished(process, 30);
+  sender.kill();
+  sender.waitForFinished();
+  return outcome;
+}
+
 Outcome interruptProgram(const QStringList& arguments, int signal,
                          const std::function<bool(const QString&)>& ready, int patience_s) {
   QProcess process;

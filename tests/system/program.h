@@ -29,6 +29,11 @@ Outcome runProgramRedirected(const QString& redirection, const QStringList& argu
 // The same with the largest file it may write, as `ulimit -f` sets it; for full disks.
 Outcome runProgramWithFileLimit(const QStringList& arguments, int blocks_of_1024);
 
+// The program with what a shell command writes as its standard input.
+Outcome runProgramOn(const QString& shell_command, const QStringList& arguments, int patience_s = 60);
+// The same with a signal after some time.
+Outcome signalProgramOn(const QString& shell_command, const QStringList& arguments, int signal, int after_ms);
+
 // Starts it, sends the signal when `ready` accepts its output on stderr (or after `patience_s`), and waits
 // for its end.
 Outcome interruptProgram(const QStringList& arguments, int signal,
