@@ -34,7 +34,8 @@ void addRecordCommand(Command& app, int& exit_code) {
   Command command = app.command("record", "Record live streams into one file, until Ctrl-C");
   command
       .option("SOURCE", request.sources,
-              "\"-\" for the standard input, or a file that is still being written. Can be repeated")
+              "tcp://HOST:PORT or unix:///PATH of iniVation's programs, \"-\" for the standard input, or a "
+              "file that is still being written. Can be repeated")
       .required();
   command.option("-o,--output", request.output, "File to write (.mcap, .bag or .aedat4)").required();
   command.option("--to", request.format, "Output format; by default from the extension");
@@ -42,7 +43,8 @@ void addRecordCommand(Command& app, int& exit_code) {
   command.option("--resolution", arguments->resolution,
                  "Resolution of the sensor, e.g. 346x260, if the stream does not contain it");
   command.flag("--quiet", arguments->quiet, "Print no progress");
-  command.example("camera-program | evical record - -o recording.mcap");
+  command.example(
+      "evical record tcp://localhost:7777 tcp://localhost:7778 -o recording.aedat4 --duration 40");
   command.action([arguments, &exit_code] {
     if (!arguments->resolution.empty())
       arguments->request.resolution_px = resolutionIn(arguments->resolution);

@@ -4,6 +4,7 @@
 #include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/recording/live/live_source.h"
+#include "core/recording/live/lost_packets.h"
 #include "core/recording/recording_writer.h"
 
 #include <fmt/format.h>
@@ -51,6 +52,7 @@ struct Source {
   std::string address;
   std::unique_ptr<RecordingReader> reader;
   std::vector<std::size_t> targets;  // of its streams
+  std::vector<LostPackets> lost;     // of its streams
   std::atomic<bool> ended = false;
   std::atomic<Clock::rep> last_arrival = 0;
   bool is_silent = false;  // and reported
@@ -132,6 +134,7 @@ void LiveRecorder::addStreams(Source& source) {
     chosen.push_back(i);
     summary_.streams.push_back(std::move(info));
   }
+  source.lost.resize(source.targets.size());
   source.reader->select(chosen);
 }
 
@@ -175,6 +178,7 @@ void LiveRecorder::write(Source& source, const Packet& packet) {
   const StreamInfo& info = source.reader->streams()[packet.stream];
   const std::scoped_lock lock(mutex_);
   if (enough_) return;
+  source.lost[packet.stream].add(packet);
   samples_.clear();
   toSi(packet.imu_samples, info.acceleration_unit, info.angular_rate_unit, samples_);
   if (!packet.events.empty()) writer_->write(target, EventSpan(packet.events));
@@ -205,8 +209,12 @@ void LiveRecorder::reportSilence() {
 
 void LiveRecorder::finish() {
   const std::scoped_lock lock(mutex_);
-  for (const auto& source : sources_)
+  for (const auto& source : sources_) {
     for (const RecordingFault& fault : source->reader->faults()) summary_.faults.push_back(fault);
+    for (std::size_t i = 0; i < source->lost.size(); ++i)
+      if (auto fault = source->lost[i].fault(source->reader->streams()[i].name))
+        summary_.faults.push_back(std::move(*fault));
+  }
   writer_->finish();
 }
 

@@ -2,7 +2,9 @@
 
 #include "core/base/error.h"
 #include "core/base/progress.h"
+#include "core/recording/live/dv_stream.h"
 #include "core/recording/live/growth.h"
+#include "core/recording/live/socket.h"
 #include "core/recording/live/spool.h"
 #include "core/recording/separate_reader.h"
 
@@ -102,14 +104,25 @@ bool LiveReader::read(Packet& packet) {
 // A stop ends the stream anywhere.
 const std::vector<RecordingFault>& LiveReader::faults() const {
   faults_ = reader_->faults();
+  for (RecordingFault& note : spool_->notes()) faults_.push_back(std::move(note));
   if (stop_.stop_requested())
     std::erase_if(faults_, [](const RecordingFault& fault) { return fault.kind == FaultKind::Truncated; });
   return faults_;
 }
 
 void LiveReader::awaitFirst() {
-  static_cast<void>(spool_->growth()->waitFor(1));
-  if (spool_->growth()->bytes() > 0) return;
+  const Growth& growth = *spool_->growth();
+  const Clock::time_point begin = Clock::now();
+  const bool is_server = name_.find("://") != std::string::npos;
+  while (growth.bytes() == 0 && !growth.hasEnded()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (is_server && Clock::now() - begin > LivePatience::first_bytes)
+      throw badInput(name_,
+                     fmt::format("it is connected, but nothing has arrived for {:g} s",
+                                 1e-3 * static_cast<double>(LivePatience::first_bytes.count())),
+                     "Check that the program sends, and what this port is for");
+  }
+  if (growth.bytes() > 0) return;
   spool_->check();
   if (stop_.stop_requested()) throw Cancelled{};
   throw badInput(name_, "nothing arrived before its end", "Check the program that sends");
@@ -166,7 +179,7 @@ class GrowingFileReader : public RecordingReader {
 }  // namespace
 
 bool isLiveAddress(std::string_view source) {
-  return source == kStandardInput;
+  return source == kStandardInput || source.find("://") != std::string_view::npos;
 }
 
 std::string liveName(const std::string& source) {
@@ -176,8 +189,12 @@ std::string liveName(const std::string& source) {
 std::unique_ptr<RecordingReader> openLive(const std::string& source, const std::filesystem::path& folder,
                                           std::stop_token stop) {
   if (!isLiveAddress(source)) return std::make_unique<GrowingFileReader>(source, std::move(stop));
-  const Spool::Fill fill = [](Spool& spool, const std::stop_token& ended) {
-    pumpDescriptor(STDIN_FILENO, spool, ended);
+  if (source != kStandardInput) static_cast<void>(liveAddress(source));
+  const Spool::Fill fill = [source](Spool& spool, const std::stop_token& ended) {
+    if (source == kStandardInput)
+      pumpDescriptor(STDIN_FILENO, spool, ended);
+    else
+      storeDvStream(source, spool, ended);
   };
   return std::make_unique<LiveReader>(liveName(source), std::make_unique<Spool>(folder, fill),
                                       std::move(stop));

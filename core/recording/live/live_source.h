@@ -4,6 +4,7 @@
 
 #include "core/recording/recording_reader.h"
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <stop_token>
@@ -17,6 +18,12 @@ bool isLiveAddress(std::string_view source);
 
 // For people: "the standard input", or the address.
 std::string liveName(const std::string& source);
+
+// How long servers may be silent; tests have less time.
+struct LivePatience {
+  static inline std::chrono::milliseconds first_bytes{10'000};
+  static inline std::chrono::milliseconds again{3'000};  // to answer after a connection broke
+};
 
 // Waits for the first data and opens them. `folder`: for the temporary file, which has no name and disappears
 // with the program. A stop ends the stream, not the reader: it still returns everything that has arrived.

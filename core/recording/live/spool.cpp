@@ -63,6 +63,16 @@ void Spool::append(std::string_view bytes) {
   }
 }
 
+void Spool::note(FaultKind kind, std::string text) {
+  const std::scoped_lock lock(mutex_);
+  if (std::ssize(notes_) < kMostAlikeFaults) notes_.push_back({"", kind, 0.0, std::move(text)});
+}
+
+std::vector<RecordingFault> Spool::notes() const {
+  const std::scoped_lock lock(mutex_);
+  return notes_;
+}
+
 void Spool::check() {
   std::exception_ptr error;
   {

@@ -1,6 +1,7 @@
 // The temporary file of a live stream: a thread fills it, readers follow it.
 #pragma once
 
+#include "core/data/recording.h"
 #include "core/recording/live/growth.h"
 
 #include <cstdint>
@@ -10,8 +11,10 @@
 #include <memory>
 #include <mutex>
 #include <stop_token>
+#include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 namespace evical {
 
@@ -28,6 +31,7 @@ class Spool {
 
   // For the filling thread. Throws CalibrationError, e.g. on a full disk.
   void append(std::string_view bytes);
+  void note(FaultKind kind, std::string text);
 
   // Valid while this object exists.
   const std::filesystem::path& path() const { return path_; }
@@ -36,13 +40,15 @@ class Spool {
   void stop() { thread_.request_stop(); }
   // Throws what ended the stream, once.
   void check();
+  std::vector<RecordingFault> notes() const;
 
  private:
   std::filesystem::path folder_, path_;
   int file_ = -1;
   std::shared_ptr<Growth> growth_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::exception_ptr error_;
+  std::vector<RecordingFault> notes_;
   std::jthread thread_;
 };
 
