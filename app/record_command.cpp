@@ -34,7 +34,8 @@ void addRecordCommand(Command& app, int& exit_code) {
   Command command = app.command("record", "Record live streams into one file, until Ctrl-C");
   command
       .option("SOURCE", request.sources,
-              "tcp://HOST:PORT or unix:///PATH of iniVation's programs, \"-\" for the standard input, or a "
+              "tcp://HOST:PORT or unix:///PATH of iniVation's programs, ws://HOST:PORT of foxglove_bridge, "
+              "\"-\" for the standard input, or a "
               "file that is still being written. Can be repeated")
       .required();
   command.option("-o,--output", request.output, "File to write (.mcap, .bag or .aedat4)").required();

@@ -52,7 +52,8 @@ void addSimulateCommand(Command& app, int& exit_code) {
   const Argument serve = command.option(
       "--serve", arguments->play.address,
       "Then play the recording to programs on the network, e.g. at tcp://localhost:7777, with one port "
-      "for each stream as iniVation's programs have");
+      "for each stream as iniVation's programs have, or as foxglove_bridge at "
+      "ws://localhost:8765");
   command.option("--speed", arguments->play.speed, "Speed of playing; by default 1: real time")
       .between(0.01, 1000.0)
       .needs(serve);

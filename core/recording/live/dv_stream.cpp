@@ -5,26 +5,21 @@
 #include "core/recording/aedat/packets.h"
 #include "core/recording/byte_cursor.h"
 #include "core/recording/live/live_source.h"
+#include "core/recording/live/reconnection.h"
 #include "core/recording/live/socket.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <mutex>
 #include <string_view>
 #include <utility>
 
 namespace evical {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::uint32_t kMaxHeader_bytes = 1 << 20, kMaxPacket_bytes = 1 << 26;
 constexpr std::int32_t kLargestId = 9999;
-constexpr std::chrono::milliseconds kAgain{200};  // between attempts to connect
 
 class DvStream {
  public:
@@ -34,13 +29,10 @@ class DvStream {
   void run();
 
  private:
-  enum class End { Closed, Broken };
-
-  bool connectAgain();
   bool readHeader();
   void begin(std::string header);
   void takeHeaderless(std::string first);
-  End readPackets();
+  Ended readPackets();
   std::size_t checkPacket(std::string_view packet) const;
   bool readMore(std::string& bytes, std::size_t count);
   [[noreturn]] void refuse(const std::string& problem) const;
@@ -48,7 +40,7 @@ class DvStream {
   const std::string& address_;
   Spool& spool_;
   const std::stop_token& stop_;
-  Socket socket_;
+  Socket* socket_ = nullptr;
   std::string header_;   // of the file; empty before the first connection
   std::string pending_;  // bytes of the first packet that were read in search of a header
 };
@@ -64,7 +56,7 @@ bool DvStream::readMore(std::string& bytes, std::size_t count) {
   while (count > 0) {
     const std::size_t piece = std::min(count, kPiece_bytes), before = bytes.size();
     bytes.resize(before + piece);
-    if (!socket_.readAll(bytes.data() + before, piece)) {
+    if (!socket_->readAll(bytes.data() + before, piece)) {
       bytes.resize(before);
       return false;
     }
@@ -87,7 +79,7 @@ void DvStream::begin(std::string header) {
 bool DvStream::readHeader() {
   constexpr std::size_t kStart_bytes = 12;  // size, offset, type
   std::string start;
-  socket_.setPatience(LivePatience::first_bytes);
+  socket_->setPatience(LivePatience::first_bytes);
   if (!readMore(start, kStart_bytes)) return false;
   if (start.substr(8) != "IOHE") {
     takeHeaderless(std::move(start));
@@ -124,59 +116,30 @@ void DvStream::takeHeaderless(std::string first) {
   begin(aedat::encodeHeader(header, unused));
 }
 
-DvStream::End DvStream::readPackets() {
+Ended DvStream::readPackets() {
   for (;;) {
     std::string packet = std::exchange(pending_, {});
     const bool started = !packet.empty();
     if (packet.size() < aedat::kPacketHeader_bytes &&
         !readMore(packet, aedat::kPacketHeader_bytes - packet.size()))
-      return packet.empty() ? End::Closed : End::Broken;
+      return packet.empty() ? Ended::Closed : Ended::Broken;
     const std::size_t whole = aedat::kPacketHeader_bytes + checkPacket(packet);
     if (started && packet.size() > whole) refuse("the first packet is too short");
-    if (!readMore(packet, whole - packet.size())) return End::Broken;
+    if (!readMore(packet, whole - packet.size())) return Ended::Broken;
     spool_.append(packet);
   }
 }
 
-// False if the server is gone.
-bool DvStream::connectAgain() {
-  std::mutex mutex;
-  std::unique_lock lock(mutex);
-  std::condition_variable_any waiting;
-  const Clock::time_point end = Clock::now() + LivePatience::again;
-  while (!stop_.stop_requested() && Clock::now() < end) {
-    waiting.wait_for(lock, stop_, kAgain, [] { return false; });
-    try {
-      socket_ = Socket(liveAddress(address_), stop_);
-      return true;
-    } catch (const CalibrationError&) {
-    } catch (const Cancelled&) {
-    }
-  }
-  return false;
-}
-
 void DvStream::run() {
-  const Clock::time_point begin = Clock::now();
-  const auto since_s = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  socket_ = Socket(liveAddress(address_), stop_);
-  for (;;) {
-    const bool has_header = readHeader();
-    socket_.setPatience(Socket::kForever);
-    if (!has_header && header_.empty()) return;  // nothing arrived, or not enough
-    const End end = has_header ? readPackets() : End::Broken;
-    if (stop_.stop_requested()) return;
-    const double broke_s = since_s();
-    if (!connectAgain()) {
-      if (end == End::Broken)
-        spool_.note(FaultKind::Truncated, "The connection broke, and the server did not answer again.");
-      return;
-    }
-    spool_.note(
-        FaultKind::LostMessages,
-        fmt::format("The connection broke {:.1f} s after its beginning, and was opened again {:.1f} s later.",
-                    broke_s, since_s() - broke_s));
-  }
+  keepConnected<Socket>(
+      spool_, stop_, [this] { return Socket(liveAddress(address_), stop_); },
+      [this](Socket& socket) {
+        socket_ = &socket;
+        const bool has_header = readHeader();
+        if (!has_header && header_.empty()) return Ended::NothingCame;
+        socket.setPatience(Socket::kForever);
+        return has_header ? readPackets() : Ended::Broken;
+      });
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/recording/live/dv_server.h"
+#include "core/recording/live/foxglove_server.h"
 #include "core/recording/recording_reader.h"
 
 #include <fmt/format.h>
@@ -49,7 +50,9 @@ PlaySummary playRecording(const PlayRequest& request, const RunContext& context)
     throw badInput(request.recording.string(), "it has neither events nor IMU samples",
                    "Choose another recording");
   reader->select(chosen);
-  const std::unique_ptr<LiveServer> server = createDvServer(address, streams, context.stop);
+  const std::unique_ptr<LiveServer> server = address.scheme == "ws"
+                                                 ? createFoxgloveServer(address, streams, context.stop)
+                                                 : createDvServer(address, streams, context.stop);
   context.progress.log(LogLevel::Info, "Waiting for clients of " + joined(server->addresses()) + ".");
   context.progress.stageStarted("wait for clients");
   if (!server->awaitClients()) throw Cancelled{};

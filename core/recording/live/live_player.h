@@ -24,7 +24,8 @@ class LiveServer {
 
 struct PlayRequest {
   std::filesystem::path recording;
-  // "tcp://host:port": iniVation's streams, one port for each, in their order.
+  // "tcp://host:port": iniVation's streams, one port for each, in their order. "ws://host:port": ROS messages
+  // in Foxglove's protocol.
   std::string address;
   double speed = 1.0;  // of the recording's times
 };

@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/progress.h"
 #include "core/recording/live/dv_stream.h"
+#include "core/recording/live/foxglove_stream.h"
 #include "core/recording/live/growth.h"
 #include "core/recording/live/socket.h"
 #include "core/recording/live/spool.h"
@@ -141,7 +142,9 @@ void LiveReader::open() {
     const bool last = growth.hasEnded() || Clock::now() - begin > kMax;
     try {
       reader_ = openRecording(spool_->path());
-      if (last || hasSensor(*reader_)) break;
+      if (hasSensor(*reader_)) break;
+      spool_->check();
+      if (last) break;
     } catch (const CalibrationError& error) {
       spool_->check();
       if (last) throw badInput(name_, error.problem(), error.advice());
@@ -193,6 +196,8 @@ std::unique_ptr<RecordingReader> openLive(const std::string& source, const std::
   const Spool::Fill fill = [source](Spool& spool, const std::stop_token& ended) {
     if (source == kStandardInput)
       pumpDescriptor(STDIN_FILENO, spool, ended);
+    else if (source.starts_with("ws:"))
+      storeFoxgloveStream(source, spool, ended);
     else
       storeDvStream(source, spool, ended);
   };

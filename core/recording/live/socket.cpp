@@ -27,8 +27,9 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kPiece{50};  // of waits
 
 [[noreturn]] void refuse(const std::string& address) {
-  throw badInput(address, "this is no address of a stream",
-                 "Write tcp://HOST:PORT or unix:///PATH for iniVation's streams");
+  throw badInput(
+      address, "this is no address of a stream",
+      "Write tcp://HOST:PORT or unix:///PATH for iniVation's streams, ws://HOST:PORT for foxglove_bridge");
 }
 
 bool isPort(std::string_view text) {
@@ -41,7 +42,7 @@ LiveAddress liveAddress(const std::string& address) {
   const std::size_t colon = address.find("://");
   if (colon == std::string::npos) refuse(address);
   LiveAddress parts{address.substr(0, colon), "", "", ""};
-  if (parts.scheme != "unix" && parts.scheme != "tcp") refuse(address);
+  if (parts.scheme != "unix" && parts.scheme != "tcp" && parts.scheme != "ws") refuse(address);
   std::string rest = address.substr(colon + 3);
   if (parts.scheme == "unix") {
     if (rest.empty() || rest.front() != '/' || rest.size() >= sizeof(sockaddr_un::sun_path)) refuse(address);
@@ -129,6 +130,11 @@ bool Socket::awaits(short what, std::chrono::milliseconds patience) const {
     if (ready < 0 && errno != EINTR) return false;
   }
   return false;
+}
+
+bool Socket::hasMore() const {
+  pollfd waiting{socket_, POLLIN, 0};
+  return ::poll(&waiting, 1, 0) > 0;
 }
 
 std::size_t Socket::readSome(char* bytes, std::size_t count) {

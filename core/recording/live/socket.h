@@ -35,6 +35,7 @@ class Socket {
   std::size_t readSome(char* bytes, std::size_t count);
   // Longest wait of a read from now on; after it the connection counts as broken.
   void setPatience(std::chrono::milliseconds patience) { patience_ = patience; }
+  bool hasMore() const;  // a read would not wait
   // False if the end came before.
   bool readAll(char* bytes, std::size_t count);
   bool writeAll(std::string_view bytes);

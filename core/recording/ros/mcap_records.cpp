@@ -1,8 +1,14 @@
 #include "core/recording/ros/mcap_records.h"
 
 #include "core/recording/byte_cursor.h"
+#include "core/recording/recording_writer.h"
 
 namespace evical::mcap {
+
+std::string record(Op op, std::string_view content) {
+  std::string bytes = numberBytes(op) + numberBytes(std::uint64_t{content.size()});
+  return bytes.append(content);
+}
 
 bool parseSchema(std::string_view content, Schema& schema) {
   ByteCursor cursor(content);

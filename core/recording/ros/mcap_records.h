@@ -29,6 +29,8 @@ enum class Op : std::uint8_t {
   DataEnd = 0x0F,
 };
 
+std::string record(Op op, std::string_view content);
+
 // All views point into the content parsed. The parsers return false if the content does not fit.
 struct Schema {
   std::uint16_t id = 0;  // 0: none

@@ -13,15 +13,11 @@
 namespace evical {
 namespace {
 
+using mcap::record;
 using ros::sized;
 
 constexpr std::size_t kChunk_bytes = 1 << 20;
 constexpr std::int64_t kMcapSecondsEnd = std::int64_t{1} << 31;  // int32 sec
-
-std::string record(mcap::Op op, std::string_view content) {
-  std::string bytes = numberBytes(op) + numberBytes(std::uint64_t{content.size()});
-  return bytes.append(content);
-}
 
 std::uint32_t crcOf(std::uint32_t crc, std::string_view bytes) {
   return static_cast<std::uint32_t>(crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));

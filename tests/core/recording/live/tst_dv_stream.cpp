@@ -7,6 +7,7 @@
 #include "core/recording/live/live_source.h"
 #include "core/recording/live/lost_packets.h"
 #include "core/recording/live/socket.h"
+#include "tests/core/recording/live/one_server.h"
 #include "tests/core/recording/sample_recording.h"
 #include "tests/support/test_program.h"
 
@@ -20,41 +21,6 @@ using namespace evical;
 using namespace evical::test;
 
 namespace {
-
-// Sends bytes to each client, one after the other, and closes.
-class OneServer {
- public:
-  explicit OneServer(std::vector<std::string> sent)
-      : listener_({"tcp", "127.0.0.1", "0", ""}, stop_.get_token()) {
-    thread_ = std::jthread([this, sent = std::move(sent)](const std::stop_token& stop) {
-      for (const std::string& bytes : sent) {
-        std::optional<Socket> client;
-        while (!client && !stop.stop_requested()) {
-          client = listener_.accept();
-          std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        if (!client) return;
-        static_cast<void>(client->writeAll(bytes));
-        if (bytes.empty())  // silent
-          while (!stop.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      }
-      listener_ = Listener();
-    });
-  }
-  ~OneServer() {
-    thread_.request_stop();
-    stop_.request_stop();
-  }
-  OneServer(const OneServer&) = delete;
-  OneServer& operator=(const OneServer&) = delete;
-  std::string address() const { return address_; }
-
- private:
-  std::stop_source stop_;
-  Listener listener_;
-  std::string address_ = fmt::format("tcp://127.0.0.1:{}", listener_.port());
-  std::jthread thread_;
-};
 
 // As dv-processing describes a stream.
 std::string description(std::string_view type, bool size) {
