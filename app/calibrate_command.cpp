@@ -1,3 +1,4 @@
+#include "app/calibrate_command.h"
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
@@ -68,14 +69,18 @@ int run(const SessionArguments& arguments) {
   Console console(arguments.quiet);
   console.announceReplacement(arguments.output, {"result.yaml"});
   const NewFolder folder(arguments.output);
-  CalibrationOutcome outcome = calibrated(arguments, session, console);
+  return finishCalibration(arguments, session, calibrated(arguments, session, console), console, folder);
+}
+
+}  // namespace
+
+int finishCalibration(const SessionArguments& arguments, const Session& session, CalibrationOutcome outcome,
+                      Console& console, const NewFolder& folder) {
   if (outcome.status != RunStatus::Done) reportEnd(arguments, session, outcome, console, folder);
   const auto run = std::make_shared<const CalibrationRun>(std::move(outcome).runOrThrow());
   printResult(arguments, session, run, console);
   return kDone;
 }
-
-}  // namespace
 
 void addCalibrateCommand(Command& app, int& exit_code) {
   auto arguments = std::make_shared<SessionArguments>();

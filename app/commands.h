@@ -30,5 +30,6 @@ void addOptionsCommand(Command& app, int& exit_code);
 void addRecordCommand(Command& app, int& exit_code);
 void addRepeatCommand(Command& app, int& exit_code);
 void addSimulateCommand(Command& app, int& exit_code);
+void addWatchCommand(Command& app, int& exit_code);
 
 }  // namespace evical

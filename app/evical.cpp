@@ -39,6 +39,7 @@ void addCommands(Command& app, int& exit_code) {
   addInspectCommand(app, exit_code);
   addConvertCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
+  addWatchCommand(app, exit_code);
   addCompareCommand(app, exit_code);
   addBoardCommand(app, exit_code);
   addExportCommand(app, exit_code);

@@ -1,33 +1,19 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/console.h"
-#include "app/output.h"
+#include "app/live_lines.h"
 #include "app/session_arguments.h"
-#include "core/base/number.h"
-#include "core/recording/live/live_recording.h"
-
-#include <fmt/format.h>
+#include "core/pipeline/rig/live_watch.h"
 
 #include <memory>
 #include <string>
 
 namespace evical {
-namespace {
-
-void printSummary(const LiveRequest& request, const LiveSummary& made) {
-  print("{:.1f} s, {}, {}{} in {} ({})\n", made.duration_s, counted(made.events, "event"),
-        counted(made.imu_samples, "IMU sample"), made.frames > 0 ? ", " + counted(made.frames, "frame") : "",
-        request.output.string(), made.format);
-  printFaults(made.faults);
-}
-
-}  // namespace
-
 void addRecordCommand(Command& app, int& exit_code) {
   struct Arguments {
     LiveRequest request;
-    std::string resolution;
-    bool quiet = false;
+    std::string resolution, session;
+    bool until_good = false, quiet = false;
   };
   const auto arguments = std::make_shared<Arguments>();
   LiveRequest& request = arguments->request;
@@ -43,6 +29,11 @@ void addRecordCommand(Command& app, int& exit_code) {
   command.option("--duration", request.max_duration_s, "Stop after this time, in s");
   command.option("--resolution", arguments->resolution,
                  "Resolution of the sensor, e.g. 346x260, if the stream does not contain it");
+  const Argument session = command.option("--session", arguments->session,
+                                          "Session file of the rig: the recording is assessed meanwhile");
+  command
+      .flag("--until-good", arguments->until_good, "Stop when the recording is good enough for a calibration")
+      .needs(session);
   command.flag("--quiet", arguments->quiet, "Print no progress");
   command.example(
       "evical record tcp://localhost:7777 tcp://localhost:7778 -o recording.aedat4 --duration 40");
@@ -52,9 +43,16 @@ void addRecordCommand(Command& app, int& exit_code) {
     Console console(arguments->quiet);
     const std::filesystem::path& output = arguments->request.output;
     console.announceReplacement(output.parent_path(), {output.filename().c_str()});
-    const LiveSummary made = recordLive(arguments->request, {console, stopOnSignals()});
+    const RunContext context{console, stopOnSignals()};
+    LiveLines lines(console);
+    const LiveSummary made =
+        arguments->session.empty()
+            ? recordLive(arguments->request, context)
+            : watchLive({arguments->request, readSession(arguments->session), arguments->until_good}, lines,
+                        context)
+                  .recorded;
     console.stageStarted("done");
-    printSummary(arguments->request, made);
+    printLiveSummary(arguments->request, made);
     exit_code = kDone;
   });
 }

@@ -142,9 +142,10 @@ class ReadingPass {
  public:
   // `start_ns`: start of the whole session, if not all of its sensors are read; origin of the time range.
   ReadingPass(const Session& session, const RunContext& context, DetectionResult& result,
-              std::optional<std::int64_t> start_ns = {})
+              std::optional<std::int64_t> start_ns = {}, const LivePass* live = nullptr)
       : session_(session),
-        recording_(session, context.stop),
+        live_(live),
+        recording_(session, context.stop, live != nullptr ? live->growth : nullptr),
         result_(result),
         range_(session, session.cameras.size() + session.imus.size(),
                start_ns.value_or(recording_.start_ns())) {
@@ -171,6 +172,7 @@ class ReadingPass {
       if (range_.isOver(packet)) break;
       const bool is_camera = packet.sensor < intakes_.size();
       if (!is_camera) addSamples(packet);
+      if (live_ != nullptr && live_->samplesRead) live_->samplesRead(result_);
       if (is_camera && !addMeasured(packet, windows)) return;
     }
     context.throwIfStopped();
@@ -274,6 +276,7 @@ class ReadingPass {
   }
 
   const Session& session_;
+  const LivePass* live_;
   SessionRecording recording_;
   DetectionResult& result_;
   std::vector<Intake> intakes_;  // by camera
@@ -300,11 +303,11 @@ DetectionResult readAndDetect(const Session& session, const RunContext& context)
 }
 
 DetectionResult readAndDetect(const Session& session, std::vector<CameraLens> lenses,
-                              const RunContext& context) {
+                              const RunContext& context, const LivePass* live) {
   DetectionResult result;
   result.lenses = std::move(lenses);
   const Stopwatch stopwatch;
-  ReadingPass reading(session, context, result);
+  ReadingPass reading(session, context, result, {}, live);
   WindowWorkers windows(session, result.lenses, context);
   for (std::size_t k = 0; k < session.cameras.size(); ++k) windows.assign(k, reading.kind(k));
   windows.start();

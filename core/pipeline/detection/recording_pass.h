@@ -9,12 +9,15 @@
 #include "core/pipeline/session/session.h"
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <vector>
 
 namespace evical {
 
 class BoardTracker;
 class FrontEndObserver;
+class Growth;
 
 struct [[nodiscard]] DetectionResult {
   std::int64_t start_ns = 0;  // first event or sample of the session's streams
@@ -35,9 +38,17 @@ struct [[nodiscard]] DetectionResult {
 // of events. Throws BadInput for streams that are missing, empty, or do not fit the session.
 DetectionResult readAndDetect(const Session& session, const RunContext& context);
 
-// The same with these lenses, one per camera, instead of the session's.
+// A recording that is still being written.
+struct LivePass {
+  std::shared_ptr<Growth> growth;  // of the session's only file
+  // Called by the reading thread after a while: IMU samples so far, not in order yet.
+  std::function<void(const DetectionResult& so_far)> samplesRead;
+};
+
+// The same with these lenses, one per camera, instead of the session's. `live`: waits for the recording's
+// end.
 DetectionResult readAndDetect(const Session& session, std::vector<CameraLens> lenses,
-                              const RunContext& context);
+                              const RunContext& context, const LivePass* live = nullptr);
 
 // Reads only the IMUs of a recording with a known start; data of cameras are not read.
 DetectionResult readImus(const Session& session, std::int64_t start_ns, const RunContext& context);

@@ -81,12 +81,15 @@ std::unique_ptr<RecordingReader> openBoth(const std::filesystem::path& gyroscope
   return std::make_unique<JoinedReader>(std::move(parts));
 }
 
-SessionRecording::SessionRecording(const Session& session, std::stop_token stop)
+SessionRecording::SessionRecording(const Session& session, std::stop_token stop,
+                                   const std::shared_ptr<Growth>& growth)
     : session_(session), streams_(stop) {
   const StopWaiting until_stop(std::move(stop));
   for (const SessionCamera& camera : session.cameras)
     addSensor("cameras", camera, camera.stream, kCameraStreams);
   for (const SessionImu& imu : session.imus) addSensor("imus", imu, imu.joinedStream(), kImuStreams);
+  if (growth)
+    for (const MergedStreams::File& file : streams_.files()) static_cast<void>(file.reader->follow(growth));
   start_ns_ = streams_.begin(isCameraAlone()).value_or(0);
   checkTimed();
   streams_.checkClocks([](double first_later_s) {

@@ -32,7 +32,9 @@ class SessionRecording {
   // Opens the files and reads the first packet of each. Throws CalibrationError (BadInput) for missing files
   // and streams, and for files with unrelated clocks. When asked to stop, it behaves as at the end of the
   // files.
-  explicit SessionRecording(const Session& session, std::stop_token stop = {});
+  // `growth`: of the only file, if it is still being written.
+  explicit SessionRecording(const Session& session, std::stop_token stop = {},
+                            const std::shared_ptr<Growth>& growth = nullptr);
 
   std::size_t imuSensor(std::size_t imu) const { return session_.cameras.size() + imu; }
 

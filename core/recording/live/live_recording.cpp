@@ -78,6 +78,7 @@ class LiveRecorder {
   void write(Source& source, const Packet& packet);
   void follow(std::int64_t time_ns);
   bool isOver() const;
+  bool isComplete() const;
   void reportSilence();
   void finish();
 
@@ -90,6 +91,7 @@ class LiveRecorder {
   std::vector<ImuSample> samples_;
   std::optional<std::int64_t> first_ns_;
   std::int64_t last_ns_ = 0;
+  std::vector<bool> has_begun_;  // by written stream
   bool enough_ = false;
   std::stop_source ended_;
   std::vector<std::unique_ptr<Source>> sources_;  // last: their threads use the rest
@@ -145,6 +147,7 @@ void LiveRecorder::start() {
         liveName(request_.sources.front()),
         fmt::format("there are neither events nor IMU samples{}", format_.frames ? " nor frames" : ""),
         "Check what the program sends");
+  has_begun_.resize(summary_.streams.size());
   writer_ = createRecording(request_.output, format_.name, summary_.streams);
   for (const auto& source : sources_)
     source->thread = std::jthread([this, of = source.get()] { readAll(*of); });
@@ -177,6 +180,7 @@ void LiveRecorder::write(Source& source, const Packet& packet) {
   if (target == kNotWritten) return;
   const StreamInfo& info = source.reader->streams()[packet.stream];
   const std::scoped_lock lock(mutex_);
+  has_begun_[target] = true;
   if (enough_) return;
   source.lost[packet.stream].add(packet);
   samples_.clear();
@@ -190,6 +194,13 @@ void LiveRecorder::write(Source& source, const Packet& packet) {
   if (!packet.events.empty()) follow(packet.events.back().time_ns);
   if (!samples_.empty()) follow(samples_.back().time_ns);
   if (!packet.frames.empty()) follow(packet.frames.back().time_ns);
+}
+
+// All streams have begun, so that readers of the file know them, or some are late.
+bool LiveRecorder::isComplete() const {
+  constexpr double kLate_s = 2.0;
+  return first_ns_ && (summary_.duration_s >= kLate_s ||
+                       std::ranges::all_of(has_begun_, [](bool begun) { return begun; }));
 }
 
 bool LiveRecorder::isOver() const {
@@ -228,7 +239,10 @@ LiveSummary LiveRecorder::run() {
     std::this_thread::sleep_for(kFlush);
     {
       const std::scoped_lock lock(mutex_);
-      if (summary_.duration_s > 0.0) writer_->flush();
+      if (isComplete()) {
+        writer_->flush();
+        if (request_.progressed) request_.progressed(summary_.duration_s);
+      }
       if (enough_) ended_.request_stop();
     }
     reportSilence();

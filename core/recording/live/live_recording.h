@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -19,6 +20,8 @@ struct LiveRequest {
   std::string format;        // of recordingFormats(), if it is live; empty: by the output's extension
   Resolution resolution_px;  // of event streams, if the source does not state it
   double max_duration_s = std::numeric_limits<double>::infinity();  // of the recording's own times
+  // Called when the file can be read and has grown, with its duration.
+  std::function<void(double recorded_s)> progressed = {};
 };
 
 struct LiveSummary {
