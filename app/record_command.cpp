@@ -4,6 +4,7 @@
 #include "app/live_lines.h"
 #include "app/session_arguments.h"
 #include "core/pipeline/rig/live_watch.h"
+#include "core/pipeline/session/session_keys.h"
 
 #include <memory>
 #include <string>
@@ -48,7 +49,7 @@ void addRecordCommand(Command& app, int& exit_code) {
     const LiveSummary made =
         arguments->session.empty()
             ? recordLive(arguments->request, context)
-            : watchLive({arguments->request, readSession(arguments->session), arguments->until_good}, lines,
+            : watchLive({arguments->request, readSessionOfRun(arguments->session), arguments->until_good}, lines,
                         context)
                   .recorded;
     console.stageStarted("done");

@@ -5,6 +5,7 @@
 #include "app/live_lines.h"
 #include "app/session_arguments.h"
 #include "core/pipeline/rig/live_watch.h"
+#include "core/pipeline/session/session_keys.h"
 
 #include <memory>
 #include <string>
@@ -19,7 +20,7 @@ struct WatchArguments {
 };
 
 int run(const WatchArguments& arguments) {
-  WatchRequest request{arguments.record, sessionFrom(arguments.session)};
+  WatchRequest request{arguments.record, readSessionOfRun(arguments.session.session)};
   if (request.record.output.empty()) request.record.output = arguments.session.output + ".mcap";
   Console console(arguments.session.quiet);
   console.announceReplacement(arguments.session.output, {"result.yaml"});

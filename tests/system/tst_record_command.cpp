@@ -1,4 +1,5 @@
-// `evical record`: live streams from the standard input, with every end that a recording can have.
+// `evical record` and `evical watch`: live streams from the standard input, with every end that a recording
+// can have.
 #include "core/recording/recording_writer.h"
 #include "tests/core/recording/recording_contents.h"
 #include "tests/support/test_program.h"
@@ -137,6 +138,42 @@ class TestRecordCommand : public QObject {
     VERIFY_OUTCOME(outcome, 2);
     VERIFY_SAYS(outcome, reason);
     QVERIFY(!QFileInfo::exists(path("bad.bag")));
+  }
+
+  // The result is that of `evical calibrate` on the recorded file.
+  void watch_calibratesAsTheFile() {
+    const QString session = simulated("short_bag") + "/session.yaml", result = path("watched");
+    const Outcome watched = runProgramOn("cat " + bag(), {"watch", "-", "--session", session, "-o", result});
+    VERIFY_OUTCOME(watched, 0);
+    QVERIFY2(watched.output.contains("watched.mcap (mcap)"), qPrintable(watched.output));
+    QString text = QString::fromUtf8(readFile(session));
+    text.replace(QRegularExpression("recording: .*"), "recording: " + result + ".mcap");
+    writeFile(path("again.yaml"), text.toUtf8());
+    VERIFY_OUTCOME(runProgram({"calibrate", path("again.yaml"), "-o", path("again"), "--quiet"}), 0);
+    const auto stripped = [&](const QString& folder) {
+      QString result_text = QString::fromUtf8(readFile(folder + "/result.yaml"));
+      return result_text.remove(QRegularExpression("timing_s: .*"))
+          .remove(QRegularExpression("memory_peak_mb: .*"));
+    };
+    QCOMPARE(stripped(result), stripped(path("again")));
+  }
+
+  void watch_namesWhatDoesNotFit() {
+    const QString session = simulated("short_bag") + "/session.yaml";
+    QString text = QString::fromUtf8(readFile(session));
+    writeFile(path("other.yaml"),
+              QString(text).replace(QRegularExpression("stream: .*events"), "stream: /nothing").toUtf8());
+    const Outcome other = runProgramOn(
+        "cat " + bag(), {"watch", "-", "--session", path("other.yaml"), "-o", path("other"), "--quiet"});
+    VERIFY_OUTCOME(other, 2);
+    VERIFY_SAYS(other, "the recording has no stream of type events");
+    writeFile(path("lens.yaml"),
+              text.replace(QRegularExpression("    intrinsics:\n(      .*\n)+"), "").toUtf8());
+    const Outcome lens = runProgramOn(
+        "cat " + bag(), {"watch", "-", "--session", path("lens.yaml"), "-o", path("lens"), "--quiet"});
+    VERIFY_OUTCOME(lens, 2);
+    VERIFY_SAYS(
+        lens, "its lens is not given, so the board cannot be tracked live. Calibrate the camera alone first");
   }
 
   void badArguments_areExplained() {

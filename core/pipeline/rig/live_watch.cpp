@@ -208,8 +208,8 @@ void Watch::assess(Snapshots& snapshots, const std::stop_token& stop) {
       state.recorded_s = recorded_s_;
     }
     state.behind_s = std::max(0.0, state.recorded_s - snapshots.lastWindow_s());
-    state.instruction = instructionFor(state.assessment, state.recorded_s);
     state.until_good_s = untilGood_s(state.assessment, session_, state.recorded_s);
+    state.instruction = instructionFor(state.assessment, state.recorded_s, state.until_good_s);
     watcher_.assessed(state);
     good_ = state.assessment.light == Light::Good;
     if (good_ && request_.until_good) {
@@ -242,18 +242,26 @@ WatchedRecording Watch::run() {
 
 }  // namespace
 
-std::string instructionFor(const RecordingAssessment& assessment, double recorded_s) {
-  constexpr double kBeginning_s = 3.0;
+std::string instructionFor(const RecordingAssessment& assessment, double recorded_s,
+                           std::optional<double> until_good_s) {
+  constexpr double kBeginning_s = 3.0, kSoon_s = 20.0;
   // The order in which things help: what is not seen cannot be measured.
-  constexpr std::array kOrder = {
-      AssessedThing::Board,         AssessedThing::Speed,      AssessedThing::Turns,
-      AssessedThing::Accelerations, AssessedThing::Coverage,   AssessedThing::Rotation,
-      AssessedThing::Translation,   AssessedThing::TimeOffset, AssessedThing::Obstacle};
+  constexpr std::array kMotion = {AssessedThing::Board, AssessedThing::Speed, AssessedThing::Turns,
+                                  AssessedThing::Accelerations, AssessedThing::Coverage};
+  constexpr std::array kPrecision = {AssessedThing::Rotation, AssessedThing::Translation,
+                                     AssessedThing::TimeOffset, AssessedThing::Obstacle};
+  const auto adviceOn = [&](const auto& things) {
+    for (const AssessedThing thing : things)
+      for (const Assessed& each : assessment.all)
+        if (each.thing == thing && each.light != Light::Good) return each.advice;
+    return std::string();
+  };
   if (recorded_s < kBeginning_s) return {};
-  for (const AssessedThing thing : kOrder)
-    for (const Assessed& each : assessment.all)
-      if (each.thing == thing && each.light != Light::Good) return each.advice;
-  return {};
+  if (std::string advice = adviceOn(kMotion); !advice.empty()) return advice;
+  // Everything moves as it should, so that time is all that is missing.
+  if (!until_good_s || *until_good_s <= kSoon_s)
+    return assessment.light == Light::Good ? "" : "Go on like this.";
+  return adviceOn(kPrecision);
 }
 
 WatchedRecording watchLive(const WatchRequest& request, LiveWatcher& watcher, const RunContext& context) {

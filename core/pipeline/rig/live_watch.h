@@ -46,7 +46,9 @@ struct [[nodiscard]] WatchedRecording {
 // All lenses must be given. Throws CalibrationError, and Cancelled if it is stopped before any data.
 WatchedRecording watchLive(const WatchRequest& request, LiveWatcher& watcher, const RunContext& context);
 
-// The first thing to do about a recording so far. Empty if nothing is wrong, or it is too early to say.
-std::string instructionFor(const RecordingAssessment& assessment, double recorded_s);
+// The first thing to do about a recording so far; empty if it is too early to say. `until_good_s`: as in
+// LiveState.
+std::string instructionFor(const RecordingAssessment& assessment, double recorded_s,
+                           std::optional<double> until_good_s);
 
 }  // namespace evical
