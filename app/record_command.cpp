@@ -49,8 +49,8 @@ void addRecordCommand(Command& app, int& exit_code) {
     const LiveSummary made =
         arguments->session.empty()
             ? recordLive(arguments->request, context)
-            : watchLive({arguments->request, readSessionOfRun(arguments->session), arguments->until_good}, lines,
-                        context)
+            : watchLive({arguments->request, readSessionOfRun(arguments->session), arguments->until_good},
+                        lines, context)
                   .recorded;
     console.stageStarted("done");
     printLiveSummary(arguments->request, made);

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 
 seconds=${1:-60}
 targets=("${@:2}")
-[ "${#targets[@]}" -gt 0 ] || targets=(bag mcap db3 packed aedat2 aedat3 aedat4 hdf5 npy npz raw es text tables pictures payload detections run_data yaml calibrate)
+[ "${#targets[@]}" -gt 0 ] || targets=(bag mcap db3 packed aedat2 aedat3 aedat4 hdf5 npy npz raw es text tables pictures dv foxglove payload detections run_data yaml calibrate)
 
 packaging/install-dependencies.sh test sanitizers
 build=build/fuzz
@@ -21,6 +21,8 @@ rm -rf "$seeds"
 ASAN_OPTIONS=detect_leaks=0 "$build/tests/fuzz/evical_fuzz_seeds" "$seeds"
 /usr/bin/python3 tests/fuzz/hdf5_seeds.py "$seeds/hdf5"
 cp tests/fuzz/seeds/hdf5/*.h5 "$seeds/hdf5"
+mkdir -p "$seeds/dv"
+for file in "$seeds"/aedat4/*; do tail -c +15 "$file" >"$seeds/dv/$(basename "$file")"; done  # without the first line
 mkdir -p "$seeds/tables" "$seeds/yaml" "$seeds/calibrate" "$seeds/run_data"
 for kind in $(seq 0 11); do  # a disturbance of each kind, about a second long, in the middle
   printf "\\x$(printf %02x "$kind")\\x60\\xa0\\x06\\x01\\x02" >"$seeds/calibrate/$kind"

@@ -13,9 +13,9 @@ run=(
   # core
   libeigen3-dev libceres-dev libsuitesparse-dev libyaml-cpp-dev libfmt-dev libspdlog-dev
   libopencv-dev libapriltag-dev libpng-dev
-  # recordings: ROS 1 bags are bz2 or lz4 compressed, ROS 2 bags are SQLite or MCAP, AEDAT4 is lz4 or zstd; HDF5 has its
-  # own library and filters
-  libbz2-dev liblz4-dev libzstd-dev zlib1g-dev libsqlite3-dev libhdf5-dev libblosc-dev liblzf-dev
+  # recordings: live streams need Boost's WebSocket, ROS 1 bags are bz2 or lz4 compressed, ROS 2 bags are SQLite or MCAP,
+  # AEDAT4 is lz4 or zstd; HDF5 has its own library and filters
+  libboost-dev libbz2-dev liblz4-dev libzstd-dev zlib1g-dev libsqlite3-dev libhdf5-dev libblosc-dev liblzf-dev
   # command line
   libcli11-dev nlohmann-json3-dev
   # Python module

@@ -4,6 +4,8 @@
 #include "core/recording/aedat/stream_description.h"
 #include "core/recording/recording_writer.h"
 #include "core/recording/ros/compression.h"
+#include "core/recording/ros/message_types.h"
+#include "core/recording/ros/ros_messages.h"
 #include "tests/core/recording/aedat/aedat2_builder.h"
 #include "tests/core/recording/aedat/aedat3_builder.h"
 #include "tests/core/recording/aedat/frame_packets.h"
@@ -13,6 +15,8 @@
 #include "tests/core/recording/ros/image_builder.h"
 #include "tests/core/recording/ros/ros2_builder.h"
 #include "tests/support/packed_events.h"
+
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <fstream>
@@ -230,6 +234,26 @@ void savePayloads(const fs::path& folder) {
   save(folder / "payload/cdr_imu", kind(4) + test::cdrImu(someSamples().front()));
 }
 
+// Messages of Foxglove's protocol: kind, length, content.
+void saveFoxglove(const fs::path& folder) {
+  const ros::MessageType& type = ros::imuType(ros::Serialization::Cdr);
+  const std::string channel =
+      fmt::format(R"({{"id":7,"topic":"/imu","encoding":"cdr","schemaName":"{}","schema":""}})", type.name);
+  std::string session;
+  const auto add = [&](char kind, const std::string& content) {
+    session += kind + numberBytes(static_cast<std::uint16_t>(content.size())) + content;
+  };
+  add(0, R"({"op":"serverInfo","name":"bridge","capabilities":[]})");
+  add(0, R"({"op":"advertise","channels":[)" + channel + "]}");
+  for (const ImuSample& sample : someSamples()) {
+    std::string payload;
+    ros::encodeImu(sample, 0, ros::Serialization::Cdr, payload);
+    add(1, "\1" + numberBytes(std::uint32_t{1}) + numberBytes(static_cast<std::uint64_t>(sample.time_ns)) +
+               payload);
+  }
+  save(folder / "foxglove/imu", session);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -243,6 +267,7 @@ int main(int argc, char** argv) {
   saveCameraFormats(folder);
   saveArrays(folder);
   savePayloads(folder);
+  saveFoxglove(folder);
   std::string packed;
   ros::packZstd(contentOf(folder / "mcap/plain"), packed);
   save(folder / "packed/mcap", packed);

@@ -238,7 +238,7 @@ bool Aedat4Reader::nextPacket(PacketHeader& header) {
   }
 }
 
-// What is no packet is the table, or damage: the header says at the end where the table is.
+// Anything but a packet is the table, or damage. At the end the header has the place of the table.
 Aedat4Reader::HeaderState Aedat4Reader::awaitHeader(PacketHeader& header) {
   file_.reaches(position_ + aedat::kPacketHeader_bytes + 4);
   HeaderState state = readHeader(position_, header);
@@ -256,7 +256,7 @@ Aedat4Reader::HeaderState Aedat4Reader::awaitHeader(PacketHeader& header) {
 bool Aedat4Reader::follow(const std::shared_ptr<Growth>& growth) {
   follows_ = table_position_ == 0;
   if (follows_) file_.follow(growth);
-  // The place of a table that is still to come is no fault.
+  // The table is still to come.
   if (follows_)
     std::erase_if(faults_, [](const RecordingFault& fault) { return fault.kind == FaultKind::Truncated; });
   return true;

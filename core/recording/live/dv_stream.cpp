@@ -46,7 +46,7 @@ class DvStream {
 };
 
 void DvStream::refuse(const std::string& problem) const {
-  throw badInput(address_, problem + ": this is no stream of iniVation's programs",
+  throw badInput(address_, problem + ": iniVation's programs send nothing like this",
                  "Give the address of dv-processing's NetworkWriter or of DV's network output");
 }
 

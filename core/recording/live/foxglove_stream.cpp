@@ -54,7 +54,7 @@ class FoxgloveStream {
 };
 
 void FoxgloveStream::refuse(const std::string& problem) const {
-  throw badInput(address_, problem + ": this is no server of Foxglove's protocol",
+  throw badInput(address_, problem + ": servers of Foxglove's protocol send nothing like this",
                  "Start foxglove_bridge, and give its port");
 }
 

@@ -10,8 +10,7 @@ namespace evical {
 
 class Growth {
  public:
-  // How the end is known: the writer calls end(), or, for another program's file, it has not grown for a
-  // while.
+  // How the end is known: the writer calls end(), or another program's file does not grow for a while.
   enum class EndsBy { Writer, Silence };
   static constexpr double kSilence_s = 5.0;
 

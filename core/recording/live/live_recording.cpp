@@ -47,7 +47,7 @@ bool isWritable(const StreamInfo& stream, const RecordingFormat& format) {
   return stream.type == StreamType::Events || stream.type == StreamType::Imu;
 }
 
-// One source, read in a thread of its own, since each may have nothing for a while.
+// One source, read by a separate thread, since each may have nothing for a while.
 struct Source {
   std::string address;
   std::unique_ptr<RecordingReader> reader;

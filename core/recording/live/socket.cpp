@@ -28,7 +28,7 @@ constexpr std::chrono::milliseconds kPiece{50};  // of waits
 
 [[noreturn]] void refuse(const std::string& address) {
   throw badInput(
-      address, "this is no address of a stream",
+      address, "this is not the address of a stream",
       "Write tcp://HOST:PORT or unix:///PATH for iniVation's streams, ws://HOST:PORT for foxglove_bridge");
 }
 

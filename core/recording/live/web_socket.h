@@ -27,7 +27,7 @@ class WebSocket {
 
   bool isOpen() const;
   void setPatience(std::chrono::milliseconds patience);
-  // The next message; false at the end. why() tells then why, if the other side did not close.
+  // The next message; false at the end. why() is then the reason, unless the other side has closed.
   bool read(std::string& message, Content& content);
   bool write(Content content, std::string_view message);
   // Something has arrived.

@@ -122,7 +122,7 @@ bool RosReader::read(Packet& packet) {
   return false;
 }
 
-// A missing index is no fault of such a file.
+// The index of such a file comes last.
 bool RosReader::follow(const std::shared_ptr<Growth>& growth) {
   if (files_.size() != 1 || started_ || !source_->follow(growth)) return false;
   topics_.dropFaults(FaultKind::NoIndex);

@@ -230,9 +230,9 @@ void TestDvStream::badServers_areExplained_data() {
   QTest::newRow("silence") << QByteArray() << "it is connected, but nothing has arrived for 0.7 s";
   QTest::newRow("huge header")
       << bytes(numberBytes(0xffff'fff0U) + numberBytes(32U) + "IOHE")
-      << "the header states 4294967280 bytes: this is no stream of iniVation's programs";
+      << "the header states 4294967280 bytes: iniVation's programs send nothing like this";
   QTest::newRow("web server") << bytes("HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n")
-                              << "this is no stream of iniVation's programs";
+                              << "iniVation's programs send nothing like this";
   QTest::newRow("unknown compression")
       << bytes(header(static_cast<aedat::Compression>(9))) << "the header is damaged";
   QTest::newRow("huge packet") << bytes(header(none) + packet_10_gb)
@@ -258,7 +258,7 @@ void TestDvStream::badAddresses_areExplained_data() {
   for (const char* address :
        {"tcp://", "tcp://localhost", "tcp://:7777", "tcp://localhost:x", "tcp://localhost:123456",
         "udp://localhost:7777", "unix://relative", "http://localhost:80"})
-    QTest::newRow(address) << address << "this is no address of a stream";
+    QTest::newRow(address) << address << "this is not the address of a stream";
   QTest::newRow("nobody") << "tcp://127.0.0.1:1"
                           << "cannot be reached: Connection refused";
   QTest::newRow("no socket") << "unix:///nowhere"
