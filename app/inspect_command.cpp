@@ -5,13 +5,20 @@
 #include "core/base/number.h"
 #include "core/base/time.h"
 #include "core/recording/inspection.h"
+#include "core/recording/live/live_source.h"
 #include "core/recording/recording_reader.h"
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <filesystem>
 #include <memory>
+#include <mutex>
+#include <stop_token>
 #include <string>
+#include <thread>
 
 namespace evical {
 namespace {
@@ -116,9 +123,26 @@ void printForPeople(const std::string& recording, const Inspection& inspection, 
   }
 }
 
+// A recording, or the first seconds of a server's streams.
+Inspection inspected(const std::string& source) {
+  constexpr std::chrono::seconds kLook{5};
+  if (!isLiveAddress(source)) return inspectRecording(*openRecording(source));
+  std::stop_source end;
+  const std::unique_ptr<RecordingReader> reader =
+      openLive(source, std::filesystem::temp_directory_path(), end.get_token());
+  const bool ends_itself = source.find("://") == std::string::npos;
+  const std::jthread timer([&](const std::stop_token& done) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any waiting;
+    if (!ends_itself) waiting.wait_for(lock, done, kLook, [] { return false; });
+    if (!ends_itself) end.request_stop();
+  });
+  return inspectRecording(*reader);
+}
+
 void inspect(const InspectArguments& arguments) {
-  const std::unique_ptr<RecordingReader> reader = openRecording(arguments.recording);
-  const Inspection inspection = inspectRecording(*reader);
+  const Inspection inspection = inspected(arguments.recording);
   if (arguments.json) {
     print("{}", inspectionJson(inspection, arguments.checksum));
   } else {
@@ -133,7 +157,9 @@ void addInspectCommand(Command& app, int& exit_code) {
   Command command = app.command("inspect", "List the streams and faults of a recording");
   command
       .option("RECORDING", arguments->recording,
-              "File or folder in any supported format: bag, AEDAT, RAW, HDF5, NumPy, text, pictures")
+              "File or folder in any supported format: bag, AEDAT, RAW, HDF5, NumPy, text, pictures; or a "
+              "live source as of "
+              "`evical record`, of which 5 s are read")
       .required();
   command.flag("--json", arguments->json, "Print JSON instead of text");
   command.flag("--checksum", arguments->checksum, "Add sums over all events, for comparisons of readers");

@@ -19,6 +19,7 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -99,6 +100,11 @@ class LiveRecorder {
 
 // All at once: the streams run while one of them is waited for.
 void LiveRecorder::openSources(const std::stop_token& stop) {
+  for (const std::string& source : request_.sources) {
+    std::error_code not_a_file;
+    if (!isLiveAddress(source) && std::filesystem::equivalent(source, request_.output, not_a_file))
+      throw badInput(source, "source and output are the same", "Choose another output");
+  }
   std::filesystem::path folder = request_.output.parent_path();
   for (const std::string& address : request_.sources) {
     Source& source = *sources_.emplace_back(std::make_unique<Source>());
