@@ -27,7 +27,7 @@ void addRecordCommand(Command& app, int& exit_code) {
       .required();
   command.option("-o,--output", request.output, "File to write (.mcap, .bag or .aedat4)").required();
   command.option("--to", request.format, "Output format; by default from the extension");
-  command.option("--duration", request.max_duration_s, "Stop after this time, in s");
+  command.option("--duration", request.max_duration_s, "Stop after this time, in s").between(0.1, 1e6);
   command.option("--resolution", arguments->resolution,
                  "Resolution of the sensor, e.g. 346x260, if the stream does not contain it");
   const Argument session = command.option("--session", arguments->session,

@@ -52,7 +52,8 @@ void addWatchCommand(Command& app, int& exit_code) {
   command.option(
       "--recording", arguments->record.output,
       "File for the recording (.mcap, .bag or .aedat4); by default named as the folder, with .mcap");
-  command.option("--duration", arguments->record.max_duration_s, "Stop at the latest after this time, in s");
+  command.option("--duration", arguments->record.max_duration_s, "Stop at the latest after this time, in s")
+      .between(0.1, 1e6);
   command.flag("--quiet", arguments->session.quiet, "Print no progress");
   command.footer("Ctrl-C ends the recording, and starts the calibration.");
   command.example("evical watch tcp://localhost:7777 tcp://localhost:7778 --session session.yaml -o result");

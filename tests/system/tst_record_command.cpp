@@ -127,6 +127,11 @@ class TestRecordCommand : public QObject {
     QTest::newRow("noise") << "head -c 100000 /dev/urandom"
                            << "the standard input: the format is unknown";
     QTest::newRow("cut header") << "head -c 60 " + bag() << "the standard input: ";
+    QTest::newRow("endless noise") << "yes nothing"
+                                   << "the standard input: the format is unknown";
+    QTest::newRow("packed text")
+        << "gzip -c " + simulated("short") + "/imu.txt; sleep 4"
+        << "the standard input: text can only be read when it is complete. Write it into a file";
     QTest::newRow("web page") << "echo '<!DOCTYPE html><html>'"
                               << "this is a page of a web site";
   }

@@ -1,5 +1,5 @@
 // ROS topics without ROS: Foxglove's WebSocket protocol, as foxglove_bridge sends it.
-// Source: github.com/foxglove/ws-protocol (docs/spec.md) and foxglove-sdk.
+// Source: the specification in github.com/foxglove/ws-protocol, and foxglove-sdk.
 #pragma once
 
 #include "core/recording/live/spool.h"

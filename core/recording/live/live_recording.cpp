@@ -76,8 +76,9 @@ class LiveRecorder {
   void addStreams(Source& source);
   void start();
   void readAll(Source& source);
-  void write(Source& source, const Packet& packet);
-  void follow(std::int64_t time_ns);
+  void write(Source& source, Packet& packet);
+  void dropImpossible(Packet& packet);
+  void follow(std::size_t target, std::int64_t time_ns);
   bool isOver() const;
   bool isComplete() const;
   void reportSilence();
@@ -90,9 +91,12 @@ class LiveRecorder {
   std::mutex mutex_;  // of the writer and the summary
   std::unique_ptr<RecordingWriter> writer_;
   std::vector<ImuSample> samples_;
-  std::optional<std::int64_t> first_ns_;
-  std::int64_t last_ns_ = 0;
-  std::vector<bool> has_begun_;  // by written stream
+  struct Written {
+    std::optional<std::int64_t> last_ns;
+    double duration_s = 0.0;
+  };
+  std::vector<Written> written_;  // by written stream
+  std::uint64_t impossible_ = 0;  // items
   bool enough_ = false;
   std::stop_source ended_;
   std::vector<std::unique_ptr<Source>> sources_;  // last: their threads use the rest
@@ -105,19 +109,26 @@ void LiveRecorder::openSources(const std::stop_token& stop) {
     if (!isLiveAddress(source) && std::filesystem::equivalent(source, request_.output, not_a_file))
       throw badInput(source, "source and output are the same", "Choose another output");
   }
-  std::filesystem::path folder = request_.output.parent_path();
+  const std::filesystem::path folder = request_.output.parent_path();
+  std::mutex failing;
+  std::exception_ptr first_error;
   for (const std::string& address : request_.sources) {
     Source& source = *sources_.emplace_back(std::make_unique<Source>());
     source.address = address;
-    source.thread = std::jthread([&source, folder, stop] {
+    source.thread = std::jthread([this, &source, &first_error, &failing, folder, stop] {
       try {
         source.reader = openLive(source.address, folder, stop);
-      } catch (...) {
+      } catch (const Cancelled&) {
         source.error = std::current_exception();
+      } catch (...) {
+        const std::scoped_lock lock(failing);
+        if (!first_error) first_error = std::current_exception();
+        ended_.request_stop();  // nobody waits for the others
       }
     });
   }
   for (const auto& source : sources_) source->thread.join();
+  if (first_error) std::rethrow_exception(first_error);
   for (const auto& source : sources_)
     if (source->error) std::rethrow_exception(std::exchange(source->error, nullptr));
 }
@@ -153,7 +164,7 @@ void LiveRecorder::start() {
         liveName(request_.sources.front()),
         fmt::format("there are neither events nor IMU samples{}", format_.frames ? " nor frames" : ""),
         "Check what the program sends");
-  has_begun_.resize(summary_.streams.size());
+  written_.resize(summary_.streams.size());
   writer_ = createRecording(request_.output, format_.name, summary_.streams);
   for (const auto& source : sources_)
     source->thread = std::jthread([this, of = source.get()] { readAll(*of); });
@@ -174,20 +185,36 @@ void LiveRecorder::readAll(Source& source) {
   source.ended = true;
 }
 
-void LiveRecorder::follow(std::int64_t time_ns) {
-  if (!first_ns_) first_ns_ = time_ns;
-  last_ns_ = std::max(last_ns_, time_ns);
-  summary_.duration_s = secondsSince(*first_ns_, last_ns_);
+// Streams may have different clocks, and a clock may jump.
+void LiveRecorder::follow(std::size_t target, std::int64_t time_ns) {
+  constexpr double kLongestPause_s = 5.0;
+  Written& written = written_[target];
+  const double step_s = written.last_ns ? secondsSince(*written.last_ns, time_ns) : 0.0;
+  written.last_ns = time_ns;
+  if (step_s > 0.0 && step_s <= kLongestPause_s) written.duration_s += step_s;
+  summary_.duration_s = std::max(summary_.duration_s, written.duration_s);
   enough_ = summary_.duration_s >= request_.max_duration_s;
 }
 
-void LiveRecorder::write(Source& source, const Packet& packet) {
+// Times that files cannot contain are a damaged clock's.
+void LiveRecorder::dropImpossible(Packet& packet) {
+  constexpr std::int64_t kEnd_ns = (std::int64_t{1} << 31) * kSecond_ns;
+  const auto drop = [this](auto& items) {
+    impossible_ +=
+        std::erase_if(items, [](const auto& item) { return item.time_ns < 0 || item.time_ns >= kEnd_ns; });
+  };
+  drop(packet.events);
+  drop(packet.imu_samples);
+  drop(packet.frames);
+}
+
+void LiveRecorder::write(Source& source, Packet& packet) {
   const std::size_t target = source.targets.at(packet.stream);
   if (target == kNotWritten) return;
   const StreamInfo& info = source.reader->streams()[packet.stream];
   const std::scoped_lock lock(mutex_);
-  has_begun_[target] = true;
   if (enough_) return;
+  dropImpossible(packet);
   source.lost[packet.stream].add(packet);
   samples_.clear();
   toSi(packet.imu_samples, info.acceleration_unit, info.angular_rate_unit, samples_);
@@ -197,16 +224,16 @@ void LiveRecorder::write(Source& source, const Packet& packet) {
   summary_.events += packet.events.size();
   summary_.imu_samples += samples_.size();
   summary_.frames += packet.frames.size();
-  if (!packet.events.empty()) follow(packet.events.back().time_ns);
-  if (!samples_.empty()) follow(samples_.back().time_ns);
-  if (!packet.frames.empty()) follow(packet.frames.back().time_ns);
+  if (!packet.events.empty()) follow(target, packet.events.back().time_ns);
+  if (!samples_.empty()) follow(target, samples_.back().time_ns);
+  if (!packet.frames.empty()) follow(target, packet.frames.back().time_ns);
 }
 
 // All streams have begun, so that readers of the file know them, or some are late.
 bool LiveRecorder::isComplete() const {
   constexpr double kLate_s = 2.0;
-  return first_ns_ && (summary_.duration_s >= kLate_s ||
-                       std::ranges::all_of(has_begun_, [](bool begun) { return begun; }));
+  return summary_.duration_s >= kLate_s ||
+         std::ranges::all_of(written_, [](const Written& written) { return written.last_ns.has_value(); });
 }
 
 bool LiveRecorder::isOver() const {
@@ -232,6 +259,10 @@ void LiveRecorder::finish() {
       if (auto fault = source->lost[i].fault(source->reader->streams()[i].name))
         summary_.faults.push_back(std::move(*fault));
   }
+  if (impossible_ > 0)
+    summary_.faults.push_back(
+        {"", FaultKind::Corrupt, 0.0,
+         counted(impossible_, "time", "is", "are") + " before 1970 or after 2038; these data are left out."});
   writer_->finish();
 }
 

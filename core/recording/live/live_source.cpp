@@ -131,7 +131,7 @@ void LiveReader::awaitFirst() {
 
 // What describes the streams may come later than the first bytes: a recorder writes topics when they begin.
 void LiveReader::open() {
-  constexpr std::uint64_t kEnough_bytes = std::uint64_t{1} << 20;
+  constexpr std::uint64_t kEnough_bytes = std::uint64_t{1} << 20, kMax_bytes = std::uint64_t{1} << 28;
   constexpr std::chrono::milliseconds kEnough{1000}, kAgain{200}, kMax{10'000};
   awaitFirst();
   Growth& growth = *spool_->growth();
@@ -139,7 +139,7 @@ void LiveReader::open() {
   while (growth.bytes() < kEnough_bytes && !growth.hasEnded() && Clock::now() - begin < kEnough)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   for (;;) {
-    const bool last = growth.hasEnded() || Clock::now() - begin > kMax;
+    const bool last = growth.hasEnded() || Clock::now() - begin > kMax || growth.bytes() > kMax_bytes;
     try {
       reader_ = openRecording(spool_->path());
       if (hasSensor(*reader_)) break;

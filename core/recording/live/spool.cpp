@@ -35,7 +35,7 @@ int createNameless(const std::filesystem::path& folder) {
 Spool::Spool(const std::filesystem::path& folder, Fill fill)
     : folder_(folder.empty() ? "." : folder), file_(createNameless(folder_)) {
   if (file_ < 0) fail(folder_);
-  path_ = fmt::format("/proc/self/fd/{}", file_);
+  path_ = fmt::format("/proc/{}/fd/{}", ::getpid(), file_);  // also for the process that reads HDF5
   growth_ = std::make_shared<Growth>(path_, Growth::EndsBy::Writer);
   thread_ = std::jthread([this, fill = std::move(fill)](const std::stop_token& stop) {
     try {

@@ -115,6 +115,10 @@ std::size_t TextBytes::readUnpacked(char* bytes, std::size_t count) {
   return got;
 }
 
+bool TextBytes::isPacked() const {
+  return gzdirect(file_.get()) == 0;
+}
+
 bool TextBytes::awaitMore() {
   if (!growth_) return false;
   const std::uint64_t read = position();

@@ -32,6 +32,7 @@ class TextBytes {
   std::size_t read(char* bytes, std::size_t count);
   // From now on read() returns what there is, and waits only if there is nothing yet.
   void follow(std::shared_ptr<Growth> growth) { growth_ = std::move(growth); }
+  bool isPacked() const;
   // A read would wait.
   bool isAhead() const { return growth_ && !growth_->hasEnded() && growth_->bytes() <= position(); }
   bool isDamaged() const { return damaged_; }  // a packed file ended too early

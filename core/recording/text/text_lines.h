@@ -23,6 +23,7 @@ class TextLines {
   // For a file that is still being written: next() waits for whole lines.
   void follow(const std::shared_ptr<Growth>& growth);
   bool wouldWait() const;
+  bool isPacked() const { return file_.isPacked(); }
 
   std::uint64_t number() const { return number_; }              // of the last line returned, from 1
   bool atEnd() const { return ended_ && begin_ == end_; }       // the last line was returned

@@ -108,7 +108,7 @@ void TestFoxgloveStream::ourServer_sendsEverything() {
   const Recording recording = sampleRecording(300'000);
   const std::filesystem::path path = folder_ / "source.bag";
   writeAll(*createBag(path, sampleStreams(), false), recording);
-  const std::string address = fmt::format("ws://127.0.0.1:{}", 31'000 + ::getpid() % 10'000);
+  const std::string address = fmt::format("ws://127.0.0.1:{}", 11'000 + ::getpid() % 10'000);
   const std::jthread serving([&] { playRecording({path, address, 20.0}, {}); });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   const LiveSummary made = record(address);
