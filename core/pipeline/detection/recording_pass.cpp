@@ -13,6 +13,7 @@
 #include "core/data/calibration_observer.h"
 #include "core/data/imu_stamps.h"
 #include "core/frames/frame_tracker.h"
+#include "core/frontend/board_scene.h"
 #include "core/frontend/detection_options.h"
 #include "core/initialisation/initialisation_options.h"
 #include "core/optimisation/optimisation_options.h"
