@@ -60,8 +60,8 @@ class TestRecordCommand : public QObject {
     const Outcome without = runProgramOn("cat " + events, {"record", "-", "-o", recorded, "--quiet"});
     VERIFY_OUTCOME(without, 2);
     VERIFY_SAYS(without,
-                "the standard input: the resolution of events is not in the stream. Give it with "
-                "--resolution");
+                "the standard input: the resolution of events is not in the stream. Give the "
+                "resolution of the sensor, e.g. 346x260");
     VERIFY_OUTCOME(
         runProgramOn("cat " + events, {"record", "-", "-o", recorded, "--quiet", "--resolution", "346x260"}),
         0);

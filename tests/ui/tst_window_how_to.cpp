@@ -42,7 +42,7 @@ class TestWindowWords : public QObject {
         command(
             "\\bevical "
             "(batch|board|calibrate|check|compare|convert|detect|export|import|init|inspect|intrinsics|"
-            "maintain|options|repeat|simulate)\\b|--[a-z]");
+            "maintain|options|record|repeat|simulate|watch)\\b|--[a-z]");
     const QStringList allowed = {
         "/base/how_to.cpp",
         "/batch/batch_run.cpp",             // starts programs

@@ -143,7 +143,7 @@ void LiveRecorder::addStreams(Source& source) {
       info.resolution_px = request_.resolution_px;
     if (info.type == StreamType::Events && !info.resolution_px.known())
       throw badInput(liveName(source.address), "the resolution of " + info.name + " is not in the stream",
-                     "Give it with --resolution, e.g. 346x260");
+                     "Give the resolution of the sensor, e.g. 346x260");
     const auto same = [&](const StreamInfo& other) { return other.name == info.name; };
     const std::string name = info.name;
     for (int number = 2; std::ranges::any_of(summary_.streams, same); ++number)
