@@ -32,7 +32,7 @@ class FoxgloveServer : public LiveServer {
     for (const StreamInfo& stream : streams_)
       if (stream.type == StreamType::Events && !stream.resolution_px.known())
         throw badInput(stream.name, "the recording does not contain the resolution of its sensor",
-                       "Convert it with --resolution first");
+                       "Convert it to a format that has the resolution first");
   }
 
   std::vector<std::string> addresses() const override {
