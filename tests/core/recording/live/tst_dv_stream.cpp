@@ -131,7 +131,7 @@ void TestDvStream::ourServer_sendsEverything() {
   std::jthread serving([&] {
     playRecording({path, fmt::format("tcp://127.0.0.1:{}", port), 20.0}, {log, {}});
   });
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   const LiveSummary made =
       record({fmt::format("tcp://127.0.0.1:{}", port), fmt::format("tcp://127.0.0.1:{}", port + 1)},
              output.toStdString());

@@ -110,7 +110,7 @@ void TestFoxgloveStream::ourServer_sendsEverything() {
   writeAll(*createBag(path, sampleStreams(), false), recording);
   const std::string address = fmt::format("ws://127.0.0.1:{}", 11'000 + ::getpid() % 10'000);
   const std::jthread serving([&] { playRecording({path, address, 20.0}, {}); });
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   const LiveSummary made = record(address);
   QVERIFY2(made.faults.empty(), made.faults.empty() ? "" : made.faults.front().text.c_str());
   const Contents got = readAll(folder_ / "recorded.mcap");
