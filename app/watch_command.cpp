@@ -44,7 +44,8 @@ void addWatchCommand(Command& app, int& exit_code) {
   Command command = app.command(
       "watch",
       "Record live streams, say which motion is missing, and calibrate when the recording is good enough");
-  command.option("SOURCE", arguments->record.sources, "As of `evical record`. Can be repeated").required();
+  command.option("SOURCE", arguments->record.sources, "A source of `evical record`. Can be repeated")
+      .required();
   command
       .option("--session", arguments->session.session, "Session file of the rig; its recording is not used")
       .required();

@@ -75,7 +75,7 @@ bool BlockReader::decodeBlock() {
   return true;
 }
 
-// What there is, up to a block; 0 at the end.
+// Reads the bytes that exist, up to a block; 0 at the end.
 std::size_t BlockReader::readBlock(char* bytes) {
   file_.read(bytes, static_cast<std::streamsize>(kReadBlock_bytes));
   if (file_.gcount() == 0 && growth_ && growth_->waitFor(position_ + 1) > position_) {

@@ -18,14 +18,15 @@
 #include <system_error>
 
 namespace evical {
-namespace {
-
-constexpr std::size_t kNotWritten = static_cast<std::size_t>(-1);
 
 bool isWritable(const StreamInfo& stream, const RecordingFormat& format) {
   if (stream.type == StreamType::Frames) return format.frames && stream.readable && stream.timed;
   return stream.type == StreamType::Events || (stream.type == StreamType::Imu && !format.one_camera);
 }
+
+namespace {
+
+constexpr std::size_t kNotWritten = static_cast<std::size_t>(-1);
 
 std::vector<std::size_t> chosenStreams(const RecordingReader& reader, const RecordingFormat& format,
                                        const ConversionRequest& request) {

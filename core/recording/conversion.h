@@ -11,6 +11,11 @@
 
 namespace evical {
 
+struct RecordingFormat;
+
+// True if a recording of this format can have the stream.
+bool isWritable(const StreamInfo& stream, const RecordingFormat& format);
+
 struct ConversionRequest {
   std::filesystem::path input, output;
   std::string format;                // of recordingFormats(); empty: by the output's extension

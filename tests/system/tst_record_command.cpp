@@ -98,7 +98,7 @@ class TestRecordCommand : public QObject {
     QCOMPARE(readFile(path("old.mcap")), QByteArray("kept"));
   }
 
-  // What arrived until 0.1 s before, plus the pieces of the pipe.
+  // The file is readable, and nothing else is left.
   void killedProgram_leavesAFileThatOpens_data() {
     QTest::addColumn<QString>("format");
     QTest::addColumn<int>("after_ms");

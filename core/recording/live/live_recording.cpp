@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/base/number.h"
 #include "core/base/time.h"
+#include "core/recording/conversion.h"
 #include "core/recording/live/live_source.h"
 #include "core/recording/live/lost_packets.h"
 #include "core/recording/recording_writer.h"
@@ -40,12 +41,6 @@ const RecordingFormat& liveFormat(const LiveRequest& request) {
   for (const RecordingFormat& each : recordingFormats())
     if (each.live) names += (names.empty() ? "" : ", ") + std::string(each.name);
   throw badInput(format.name, "this format cannot be written live", "Choose one of: " + names);
-}
-
-bool isWritable(const StreamInfo& stream, const RecordingFormat& format) {
-  if (!stream.readable) return false;
-  if (stream.type == StreamType::Frames) return format.frames && stream.timed;
-  return stream.type == StreamType::Events || stream.type == StreamType::Imu;
 }
 
 // One source, read by a separate thread, since each may have nothing for a while.
@@ -137,7 +132,8 @@ void LiveRecorder::addStreams(Source& source) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < source.reader->streams().size(); ++i) {
     StreamInfo info = source.reader->streams()[i];
-    source.targets.push_back(isWritable(info, format_) ? summary_.streams.size() : kNotWritten);
+    source.targets.push_back(info.readable && isWritable(info, format_) ? summary_.streams.size()
+                                                                        : kNotWritten);
     if (source.targets.back() == kNotWritten) continue;
     if (info.type == StreamType::Events && !info.resolution_px.known())
       info.resolution_px = request_.resolution_px;

@@ -129,7 +129,7 @@ void LiveReader::awaitFirst() {
   throw badInput(name_, "nothing arrived before its end", "Check the program that sends");
 }
 
-// What describes the streams may come later than the first bytes: a recorder writes topics when they begin.
+// Descriptions of the streams may come later than the first bytes: a recorder writes topics when they begin.
 void LiveReader::open() {
   constexpr std::uint64_t kEnough_bytes = std::uint64_t{1} << 20, kMax_bytes = std::uint64_t{1} << 28;
   constexpr std::chrono::milliseconds kEnough{1000}, kAgain{200}, kMax{10'000};

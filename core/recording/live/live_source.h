@@ -19,7 +19,7 @@ bool isLiveAddress(std::string_view source);
 // For people: "the standard input", or the address.
 std::string liveName(const std::string& source);
 
-// How long servers may be silent; tests have less time.
+// Longest silence of servers; tests have less time.
 struct LivePatience {
   static inline std::chrono::milliseconds first_bytes{10'000};
   static inline std::chrono::milliseconds again{3'000};  // to answer after a connection broke

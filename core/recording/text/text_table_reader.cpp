@@ -369,8 +369,8 @@ void TextTableReader::addBadLine(Source& source, std::size_t stream) {
        fmt::format("Line {} is not \"{}\"; it is left out.", source.lines.number(), rowOf(source.columns))});
 }
 
-// Of one table. Several would be read by their times, each waiting for the others. A packed one needs its
-// end.
+// Follows one table. Several would be read by their times, each waiting for the others. A packed one needs
+// its end.
 bool TextTableReader::follow(const std::shared_ptr<Growth>& growth) {
   if (sources_.size() != 1 || sources_.front().lines.isPacked()) return false;
   sources_.front().lines.follow(growth);

@@ -22,7 +22,7 @@ using namespace evical::test;
 
 namespace {
 
-// As dv-processing describes a stream.
+// The description of a stream by dv-processing.
 std::string description(std::string_view type, bool size) {
   return fmt::format(
       R"(<dv version="2.0">
@@ -103,7 +103,7 @@ class TestDvStream : public QObject {
     std::filesystem::remove(request.output);
     return recordLive(request, {});
   }
-  // Whether it ended with an error about the address.
+  // The error, if it ended with one.
   std::optional<std::string> errorOf(const std::string& address) const {
     try {
       record({address});
